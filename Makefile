@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary geometry
+.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary rewritten geometry
 
 help:
 	@./dev help
@@ -41,6 +41,11 @@ expressions:
 geometry:
 	./dev geometry
 	./dev geometry --cells 200
+
+# Nets and random cells written in other ways, which must behave as before.
+rewritten:
+	./dev rewritten examples
+	./dev rewritten --cells 60
 
 # A thousand random cells: what `verify` proves of them must be true in runs of their programs.
 adversary:

@@ -6,15 +6,17 @@ import importlib.util
 import os
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers import delivered_runtime, tiny_compiler
+from helpers import delivered_runtime, remembering_cc, tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
+from pn2code.base import kept_answers
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import build, programs
 
@@ -68,7 +70,8 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
     Not so for those who use `as_delivered`, nor in `make thorough`. Their runtime is compiled by one worker; others
     that want the same wait for it. That of explorers is the one that users have: it is compiled once, and most of
-    what exploring takes is spent in it. The tests compile more nets than a user does, and come back to them later.
+    what exploring takes is spent in it. The tests compile more nets than a user does, and come back to them later. What
+    is the same as before is not compiled again (`helpers.remembering_cc`).
     """
     folder = common(tmp_path_factory)
     library = programs._Builder._library
@@ -78,12 +81,21 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
             return library(builder, room, d)
 
     with pytest.MonkeyPatch.context() as changed:
+        remembering_cc.use(changed, folder, partial(once, tmp_path_factory))
         changed.setattr(programs._Builder, "_library", one_library)
         changed.setattr(programs, "MOST_PROGRAMS", 512)
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", (*flags, *tiny_compiler.use(changed)))
             delivered_runtime.use(changed)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_kept() -> Iterator[None]:
+    """Commands work everything out: tests put other functions in the place of those that answer."""
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setenv(kept_answers.ANEW, "1")
         yield
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
@@ -15,6 +16,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.robot import scene
 from pn2code.robot.commands import Along, Move, MoveCircular, MoveLinear, without_pace
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.files_of import files_of
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 
@@ -49,6 +51,11 @@ class Arms:
             cells[layout] = cell
         found = Arms(cells)
         return found if found.robots else None
+
+    @property
+    def files(self) -> frozenset[Path]:
+        """The files of their models, and of what stands around them."""
+        return frozenset[Path]().union(*map(files_of, self._cells.values()))
 
     def why_unreachable(self, robot: str, command: Move) -> str:
         """Why the arm cannot come to where a command leads, in words that name robot, pose and layout; "": it can.

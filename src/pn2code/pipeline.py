@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import pn2code
 from pn2code.base.frozen import frozen
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
@@ -35,6 +36,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
 from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
+from pn2code.verify.controller import kept_proofs
 from pn2code.verify.controller.proofs import prove
 from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_place_capacities
 
@@ -77,6 +79,7 @@ def generate(
     checked: bool = True,
     examine: Examine | None = None,
     inputs: Path | None = None,
+    kept: KeptAnswers | None = None,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
@@ -88,6 +91,8 @@ def generate(
 
     `inputs` is a folder with other input files than those beside cell.toml, or the one file: what is checked, and what
     there is room for, is the cell with these.
+
+    `kept` is what earlier commands have proved; what is proved now is added to it.
 
     `examine` looks at net and cell before anything that takes long; nothing is done after an error of it.
 
@@ -103,7 +108,7 @@ def generate(
     _refuse_unsupported(d, net)
     if net is None or d.has_errors:
         return None
-    partition = divided(net, config, d)
+    partition = divided(net, config, d, kept=kept)
     if partition is not None and examine is not None:
         examine(net, config, d)
     if partition is None or d.has_errors:
@@ -120,14 +125,25 @@ def generate(
         begun = begin(net, config, d, given=inputs)
     if d.has_errors:
         return None
-    proofs = prove(
-        replace(partition, net=begun.net),
-        config,
-        d,
-        checked=checked,
-        arms=_arms(config, d),
-        tokens={g.place: g.says for g in begun.given},
-    )
+    begun_as = replace(partition, net=begun.net)
+    proofs, question = None, None
+    if checked:
+        given = begun.given, sorted(begun.checksums.items())
+        question = kept_proofs.asked(kept, begun_as, config, replaced, given)
+        proofs = kept_proofs.recalled(question)
+    if proofs is None:
+        before = len(d.items)
+        arms = _arms(config, d)
+        proofs = prove(
+            begun_as,
+            config,
+            d,
+            checked=checked,
+            arms=arms,
+            tokens={g.place: g.says for g in begun.given},
+        )
+        if question is not None and proofs is not None and len(d.items) == before:
+            kept_proofs.keep(question, proofs, arms.files if arms is not None else ())
     if proofs is None or d.has_errors:
         return None
 

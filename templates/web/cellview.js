@@ -7,6 +7,7 @@ import { Path, frames, valueAt } from "./kinematics.js";
 import { Gaps } from "./gaps.js";
 import { CellScene, place } from "./scene3d.js";
 import { Thrift, drawsInSoftware } from "./thrift.js";
+import { Zones } from "./zones.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
 
@@ -110,6 +111,7 @@ export class CellView {
     if (this.isSparing) this.hasShadows = false;
     this.makePaths();
     this.gaps = new Gaps(this.cell, this.run.cell);
+    this.zones = new Zones(this.cell.scene, this.run.cell.zones ?? []);
     this.makeViews();
     this.theme();
     new ResizeObserver(() => this.resize()).observe(this.host);
@@ -429,6 +431,7 @@ export class CellView {
     this.moveParts(t);
     if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
     if (this.mounted >= 0) this.mount();
+    for (const text of this.zones?.update(t) ?? []) if (isWhole) this.legend.append(el("span", { class: "arm near", text }));
     const near = this.gaps?.update(t) ?? [];
     if (near.length && isWhole) {
       const [{ pair, distance }] = near;

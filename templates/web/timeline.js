@@ -16,8 +16,10 @@ const MOST_LANES = 14;
 
 /** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
 export const KINDS = /** @type {Record<string, string>} */ ({
-  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
+  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", external: "#E69F00", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
 });
+/** On these dark letters can be read. */
+const LIGHT = new Set(["home", "external"]);
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 
 /** @typedef {import("./clock.js").Clock} Clock */
@@ -430,7 +432,7 @@ export class Timeline {
       c.globalAlpha = 1;
       const fits = Math.floor((Math.min(width, this.x(this.to) - x) - 6) / 6.2);
       if (fits > 2) {
-        c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : "#fff";
+        c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
         c.fillText(shorten(bar.label, fits), Math.max(x, LEFT) + 4, y + LANE / 2);
       }
     }

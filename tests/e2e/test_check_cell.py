@@ -13,7 +13,7 @@ from typer.testing import CliRunner, Result
 from helpers.small_cell import NET, TOML, write
 from pn2code.cli.main import app
 from pn2code.robot.backend import BackendUnavailableError
-from pn2code.verdict import ahead
+from pn2code.verdict import in_space
 
 ROBOT = """model = "kr120_r2500"
 tool = "counterpoint"
@@ -149,7 +149,7 @@ def test_without_pybullet_it_is_said_that_home_is_not_checked(
     def absent(*_: object, **__: object) -> None:
         raise BackendUnavailableError("PyBullet is not installed")
 
-    monkeypatch.setattr(ahead, "open_backend", absent)
+    monkeypatch.setattr(in_space, "open_backend", absent)
     found = diagnostics(write(tmp_path, toml=TOML + ROBOT))
     assert found == [
         (

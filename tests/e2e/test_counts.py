@@ -264,7 +264,40 @@ def test_a_property_that_is_not_so_leaves_the_other_answers_as_they_are(tmp_path
     assert "states" in both["properties"][0]["why"]
     assert both["cell"]["reduced"] is True and both["cell"]["complete"] is True
     assert answers(both) == answers(alone)
-    all_of_it = verified(tmp_path / "all", NET, *wrong, *right)
-    assert [row["answer"] for row in all_of_it["properties"]] == ["no", "yes"]
-    assert all_of_it["cell"]["reduced"] is False
-    assert answers(all_of_it) == answers(alone)
+    found = verified(tmp_path / "found", NET, *wrong, *right, parts=40)
+    assert [row["answer"] for row in found["properties"]] == ["no", "yes"]
+    assert found["cell"]["reduced"] is True
+    assert answers(found) == answers(alone)
+
+
+OF_PATHS = (
+    ("ctl AF tokens(Scrap) >= 1", "no"),  # a run to the end without any
+    ("ctl AG EF tokens(Busy) = 1", "no"),  # the end
+    ("ctl AG AF tokens(Free) = 0", "no"),
+    ("ltl F tokens(Scrap) = 1", "no"),
+    ("ctl AG (tokens(Busy) = 1 -> AF tokens(Scrap) >= 1)", "no"),
+    ("every tokens(Busy) = 1 is followed by tokens(Scrap) = 1", "no"),
+    ("ctl AF tokens(Tray) >= 1", "yes"),
+    ("ctl AG (tokens(Busy) = 1 -> AF tokens(Finished) = 1)", "yes"),
+    ("every tokens(Busy) = 1 is followed by tokens(Busy) = 0", "yes"),
+)
+
+
+def test_false_properties_of_paths_have_a_run(tmp_path: Path) -> None:
+    """Also where all states are too many: depth first, and what may be behind the limit is no end."""
+    texts = [text for text, _ in OF_PATHS]
+    asked = [word for text in texts for word in ("--property", text)]
+    whole = verified(tmp_path / "whole", NET, "--no-reduction", *asked)
+    true = [word for text, answer in OF_PATHS if answer == "yes" for word in ("--property", text)]
+    few = verified(tmp_path / "few", NET, *true, "--max-states", "40", parts=40)
+    assert [row["answer"] for row in whole["properties"]] == [answer for _, answer in OF_PATHS]
+    assert all(row["answer"] != "no" for row in few["properties"])
+    # No end says that there is something on the tray: all states would have to be explored.
+    of_ends = [(text, answer) for text, answer in OF_PATHS if "Tray" not in text]
+    asked = [word for text, _ in of_ends for word in ("--property", text)]
+    many = verified(tmp_path / "many", NET, *asked, parts=40)
+    assert many["cell"]["reduced"] is True
+    for row, (text, answer) in zip(many["properties"], of_ends, strict=True):
+        assert row["answer"] == answer, text
+        if answer == "no":
+            assert row["evidence"]["confirmed"] and row["rests_on"] in ("part", "run")

@@ -71,6 +71,9 @@ def test_a_run_opens_and_closes_the_door(tmp_path: Path) -> None:
     moves = [a for a in found.record.actions if (a.robot, a.label) == ("mill", "external")]
     assert [round(a.end - a.start, 3) for a in moves] == [1.741, 2.2, 1.345, 3.4]
     assert "condition.mill" not in found.record.series
+    assert {a.kind for a in moves} == {"external"}
+    seconds = found.summary["robots"]["mill"]
+    assert (seconds["external"], seconds["joint"]) == (pytest.approx(8.686, abs=0.001), 0.0)
 
 
 def test_a_run_stops_where_an_arm_goes_through_a_closed_door(tmp_path: Path) -> None:
@@ -173,3 +176,22 @@ def test_a_belt_with_a_stop_may_run_for_less_than_it_is_told(tmp_path: Path) -> 
     feed, belt = done.parts
     assert (feed.ns, feed.least) == (2 * NS, None)
     assert belt.ns > 4 * NS and belt.least == 0
+
+
+@pytest.mark.parametrize("backend", ["fake", pytest.param("bullet", marks=pytest.mark.bullet)])
+def test_a_belt_carries_on_what_another_one_brings(backend: str, tmp_path: Path) -> None:
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend=backend, checked=False, looks=False)  # type: ignore[arg-type]
+    found = run_cell(belt_cell(tmp_path / "cell", toml=belts.LINE), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    assert found.record.verdict == "finished", found.record.reason
+    settled = [p.change for p in found.record.parts if p.change.effect == "settles"]
+    assert [(c.part, c.plate, round(c.pose.y, 6)) for c in settled] == [
+        (f"box.{n}", "feeder/away", -0.6) for n in (1, 2)
+    ]
+
+
+def test_over_all_interleavings_a_belt_carries_on_what_another_one_brings(tmp_path: Path) -> None:
+    net = belts.NET.replace("parts = 2", "parts = 1")
+    layout = looked(belt_cell(tmp_path / "cell", net, belts.LINE), tmp_path / "traces")
+    assert (layout.of_moves, layout.of_pairs) == ("yes", "yes")

@@ -43,6 +43,7 @@ def test_monitors_as_in_the_engine(name: str, tmp_path: Path) -> None:
         assert found == pytest.approx({n: number(x) for n, x in statistics.items()}, rel=1e-11)
     wrong = {f"{m.ml_name}.log" for m in monitors if m.name in kept["errors"]}
     assert files == {n: text for n, text in kept["files"].items() if n not in wrong}
+    assert outcome.steps == kept["step"]
     if outcome.why == "error":
         assert "raised when monitoring" in kept["stop"] and outcome.failure is not None
         return

@@ -75,6 +75,11 @@ EXAMPLES = {
         "palletiser", ("Supervisor", "supervisor.svg"), 81, 1, {"boxes": 8}, {"n": 8},
         ("supervisor", "robot", "conveyor"),
     ),
+    "machining": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 446, 11,
+        {"brought": 3, "milled": 3, "stored": 3, "jams": 0}, {"i": "free", "m": 3, "n": 0},
+        ("supervisor", "arm", "conveyor", "mill"),
+    ),
     "handover": Expected(
         "cell", ("Supervisor", "supervisor.svg"), 95, 1, {"grips": 6, "stored": 3}, {"n": 4},
         ("supervisor", "robot1", "robot2"),
@@ -260,7 +265,8 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
     "file",
     [
         "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
-        "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml",
+        "machining/cell.toml", "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml",
+        "riveting/cell.properties.toml",
     ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:

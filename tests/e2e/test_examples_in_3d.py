@@ -17,6 +17,7 @@ CELLS = (
     "handover",
     "tending",
     "palletiser",
+    "machining",
     "sorting",
     "shared-zone",
     "assembly",

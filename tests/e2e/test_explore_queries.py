@@ -17,11 +17,14 @@ CONDITIONS = 4
 OPERATORS = ("not", "and", "or", "ex", "ax", "ef", "af", "eg", "ag", "eu", "au", "exa")
 
 
-def graph_net(random: Random, *, timed: bool) -> tuple[str, list[str]]:
-    """A net that walks through a random graph with labelled arcs (timed: without cycles), and random conditions."""
-    nodes = random.randint(2, 9)
-    many = random.choice([1.0, 1.6, 2.5])
-    arcs = set()
+def graph_net(random: Random, *, timed: bool, long: int = 0) -> tuple[str, list[str]]:
+    """A net that walks through a random graph with labelled arcs (timed: without cycles), and random conditions.
+
+    There is a way through the first `long` nodes.
+    """
+    nodes = max(random.randint(2, 9), long)
+    many = random.choice([1.0, 1.6, 2.5]) if not long else 0.6
+    arcs = {(random.randrange(LABELS), u, u + 1) for u in range(long - 1)}
     for _ in range(int(nodes * many)):
         u, v = random.randrange(nodes), random.randrange(nodes)
         if timed and u == v:
@@ -119,6 +122,34 @@ def check_ctl(asked: Asked, conditions: list[str], random: Random) -> None:
             nodes, _ = lts.follow(second["trace"])
             assert nodes[-1] == outside[0] and second["steps"] == len(nodes) - 1
         check_evidence(lts, items, line, 0 in items.sets[i], first)
+
+
+def check_part(asked: Asked, conditions: list[str], random: Random) -> int:
+    """`initially` and runs in a part of the graph: known is only what is so in the whole; gives how much is known."""
+    lines = random_items(random, 40)
+    automata = [random_automaton(random, len(lines)) for _ in range(10)]
+    asks = [f"? initially {i}" for i in range(len(lines))] + [
+        x for a in automata for x in a.lines()
+    ]
+    found, whole = asked.say([*lines, *asks])
+    lts = Lts.of(found)
+    items = Items(lts, leaves_of(lts, conditions))
+    for line in lines:
+        items.add(line)
+    known = 0
+    for order in ("bfs", "bfs", "dfs", "dfs"):
+        most = random.randint(2, max(2, len(lts.arcs) - 1))
+        options = ("--max-states", most, "--threads", 1, "--order", order)
+        _, part = asked.say([*lines, *asks], *options)
+        for i, (one, of_part) in enumerate(zip(whole, part, strict=True)):
+            assert of_part["answer"] in (one["answer"], "unknown"), (i, lines, most, order)
+            known += of_part["answer"] != "unknown"
+            if i < len(lines) and of_part["answer"] != "unknown":
+                check_evidence(lts, items, lines[i], 0 in items.sets[i], of_part)
+            elif i >= len(lines) and of_part["answer"] == "yes":
+                nodes, labels = lts.follow(of_part["trace"])
+                assert is_run(lts, items, automata[i - len(lines)], nodes, labels, of_part["loop"])
+    return known
 
 
 def check_early(asked: Asked, conditions: list[str], random: Random) -> None:
@@ -274,6 +305,40 @@ def test_random_graphs(explorers: Explorers, part: int) -> None:
         yes += check_runs(asked, conditions, random, 40)
         check_waits(asked, conditions, random, timed=False)
     assert yes > 20
+
+
+def test_parts_of_random_graphs(explorers: Explorers) -> None:
+    """What a part decides, whatever the rest is; too bold versions of it are wrong here."""
+    known = 0
+    for number in range(amount(5, 60)):
+        random = Random(9000 + number)
+        text, conditions = graph_net(random, timed=False, long=14)
+        asked = ask(explorers, text, conditions, "part", width=number % 2)
+        known += check_part(asked, conditions, random)
+    assert known > 300
+
+
+FORK = """net Fork
+  colset N = int with 0..2;
+  place S : N = 1`0
+  trans Left
+    in S : 0
+    out S : 1
+  trans Right
+    in S : 0
+    out S : 2
+"""
+
+
+def test_a_successor_that_is_missing(explorers: Explorers) -> None:
+    """One way comes to it; the other one, which was not seen, does not."""
+    asked = ask(explorers, FORK, ["S = [1]"], "fork")
+    lines = ["pred 0", "af 0", "ef 0", "not 0", "eg 3", "ax 0"]
+    asks = [f"? initially {i}" for i in (1, 2, 4, 5)]
+    _, part = asked.say([*lines, *asks], "--max-states", 2, "--threads", 1)
+    assert [x["answer"] for x in part] == ["unknown", "yes", "unknown", "unknown"]
+    _, whole = asked.say([*lines, *asks])
+    assert [x["answer"] for x in whole] == ["no", "yes", "yes", "no"]
 
 
 def test_random_timed_graphs(explorers: Explorers) -> None:

@@ -59,6 +59,9 @@ NO = {
     "never": "never tokens(Stuck) = 1",
     "mutex": "mutex Left, Top'X",
     "ctl AG": "ctl AG tokens(Stuck) = 0",
+    "ctl AF that a cycle violates": "ctl AF tokens(Stuck) = 1",
+    "ctl AF that a dead end violates": "ctl AG (tokens(Stuck) = 1 -> AF tokens(Key) = 1)",
+    "ctl with enabled": "ctl AG (enabled(Take) -> AF tokens(Left) = 2)",
     "ltl G": "ltl G tokens(Stuck) = 0",
     "ltl that a cycle violates": "ltl F tokens(Stuck) = 1",
     "response": "every tokens(Key) = 1 is followed by tokens(Stuck) = 1",
@@ -66,7 +69,11 @@ NO = {
     "response within firings": "every fires(Take) is followed by fires(Break) within 2 firings",
     "response of conditions": "every tokens(Left) > 0 is followed by tokens(Stuck) > 0 within 2 firings",
 }
-YES = {"reachable": "reachable tokens(Stuck) = 1", "ctl EF": "ctl EF tokens(Stuck) = 1"}
+YES = {
+    "reachable": "reachable tokens(Stuck) = 1",
+    "ctl EF": "ctl EF tokens(Stuck) = 1",
+    "ctl EG": "ctl EG tokens(Key) = 1",
+}
 OPEN = {
     "bound that is kept": "bound Left <= 2",
     "always, in what was seen": "always tokens(Left) <= 2",

@@ -192,3 +192,24 @@ def test_what_cannot_be_had_is_named(tmp_path: Path) -> None:
     assert result.exit_code == 1 and "NO:" in result.stdout
     result = run.invoke(app, [*arguments, "--free", "robot4.base.x"])
     assert result.exit_code == 2 and "`robot4`" in result.stderr
+
+
+def test_what_does_not_depend_on_what_may_be_moved_is_told_at_once(tmp_path: Path) -> None:
+    """Robot 1 stands too far away, and robot 2 may be moved: that helps nobody."""
+    toml = TOML.replace("base = { x = 0.0", "base = { x = -4.0", 1)
+    assert toml != TOML
+    cell = meeting_cell(tmp_path / "cell", guarded=True, toml=toml)
+    arguments = ["place", str(cell), "--free", "robot2.base.x,y", "-o", str(tmp_path / "out")]
+    result = CliRunner().invoke(app, [*arguments, "--json"])
+    assert result.exit_code == 1, result.output
+    row = json.loads(result.output)
+    assert row["regardless"].startswith("robot1, joint 1500 0 1100") and row["looked"] == 1
+    assert not row["tried"] and row["chosen"] is None
+    # Of the arm that may be moved it is looked for.
+    free = ["--free", "robot1.base.x=-4.2:-3.8", "--generations", "1"]
+    row = json.loads(
+        CliRunner()
+        .invoke(app, [*arguments[:2], *free, "-o", str(tmp_path / "out"), "--json"])
+        .output
+    )
+    assert row["regardless"] is None and row["missed"]

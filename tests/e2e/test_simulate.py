@@ -217,6 +217,14 @@ def test_until_on_a_real_clock(tmp_path: Path) -> None:
     assert simulate(net, "--until", "soon", code=2).stderr
 
 
+def test_a_net_without_model_time_ends_as_without_until(tmp_path: Path) -> None:
+    net = write(
+        "net Cell\n  standard\n  place P = 1\n  trans T\n    both P\n", tmp_path / "cell.cpn"
+    )
+    found = result(net, "--until", 5, "--engine", "reference")
+    assert (found["steps"], found["why"]) == (1000, "steps")
+
+
 def test_steps(tmp_path: Path) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
     for engine in ("compiled", "reference"):

@@ -14,8 +14,10 @@ from typer.testing import CliRunner
 from helpers import meeting_cell
 from helpers.netbuilder import cpn
 from helpers.timed_runs_cell import NET, write
+from pn2code import division
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.emission import c as emit_c
 from pn2code.net.front import load
 from pn2code.properties.meaning import Atom, Property, Response
 from pn2code.timing import verified as seconds
@@ -37,6 +39,28 @@ def verified(folder: Path, *texts: str, options: tuple[str, ...] = ("--durations
     done = CliRunner().invoke(app, ["verify", str(folder), *asked, *more])
     assert done.stdout, done.output
     return json.loads(done.stdout)
+
+
+def test_no_program_is_generated_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who measures commands takes the program of those who checked the supervisor, and the division of the cell."""
+    emit, divide = emit_c.emit, division.divide
+    generated: list[str] = []
+    divisions: list[str] = []
+
+    def emitted(*given: Any) -> Any:
+        files = emit(*given)
+        generated.append("".join(f.text for f in files))
+        return files
+
+    def divided(*given: Any) -> Any:
+        divisions.append("divided")
+        return divide(*given)
+
+    monkeypatch.setattr(emit_c, "emit", emitted)
+    monkeypatch.setattr(division, "divide", divided)
+    assert verified(write(tmp_path))["durations"]["layouts"]
+    assert len(generated) == len(set(generated)) == 2
+    assert len(divisions) == 1
 
 
 def test_seconds(tmp_path: Path) -> None:

@@ -43,3 +43,18 @@ stop = "infeed"
 def belt_cell(folder: Path, net: str = NET, toml: str = TOML) -> Path:
     """The cell as files; gives the folder."""
     return carrying_cell.write(folder, net, toml)
+
+
+LINE = TOML.replace("length = 1.3\n", 'length = 0.6\ndrives = ["away"]\n').replace(
+    'stop = "infeed"\n',
+    """
+[devices.feeder.axes.away]
+kind = "belt"
+pose = { x = 1.5, y = -1.1, z = 0.5, yaw = 90.0 }
+length = 0.7
+width = 0.4
+height = 0.3
+stop = "infeed"
+""",
+)
+"""The same with a belt of two pieces: the first one drives the second one, which has the stop."""

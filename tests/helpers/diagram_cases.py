@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from helpers.explored import SANITIZERS
+from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import (
     Graph,
     random_branching,
@@ -18,7 +19,8 @@ from helpers.random_tables import (
 )
 from pn2code.base.resources import cnative_folder
 from pn2code.contest.engine import Answer, Space, Task, ask
-from pn2code.contest.formulas import Tokens
+from pn2code.contest.formulas import Formula, Op, Tokens
+from pn2code.contest.stepwise import question
 from pn2code.contest.tables import Tables
 from pn2code.emission import c_flags
 
@@ -28,6 +30,8 @@ MEBIBYTES = 256
 MOST = 400
 """Markings of a graph that is compared."""
 FORMULAS = 10
+MOST_PAIRS = 3000
+"""Of a marking and what holds in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +84,21 @@ def questions(c: Case) -> tuple[list[str], dict[int, bool | int]]:
         wanted[n] = max(graph.value(tokens, m) for m in graph.markings)
     asked.append(f"{FORMULAS + 8} reach dead")
     wanted[FORMULAS + 8] = any(not s for s in graph.successors)
+    for f in linear_formulas(c, 5):
+        n = len(asked)
+        asked.append(f"{n} {question(tables, 'ltl', f, {})}")
+        wanted[n] = not holds(graph, f)
     return asked, wanted
+
+
+def linear_formulas(c: Case, count: int) -> list[Formula]:
+    """Of linear time; the graph is so small that the tableau of each fits."""
+    found: list[Formula] = []
+    while len(found) < count:
+        f = Op("A", (random_linear(c.draw, c.tables, 3, c.draw.choice(("XFGU", "FG"))),))
+        if len(c.graph.markings) << len(temporal_parts(f.parts[0])) < MOST_PAIRS:
+            found.append(f)
+    return found
 
 
 def sizes(c: Case) -> Space:
@@ -94,8 +112,8 @@ def difference(program: Path, c: Case, asked: list[str], wanted: dict[int, bool 
     """How the diagrams differ from the graph; "" if they agree."""
     task = Task("diagrams", c.tables.text(asked, c.order), SECONDS, MEBIBYTES)
     found = {a.number: a.value for a in ask(program, [task]) if isinstance(a, Answer)}
-    for n, question in enumerate(asked):
+    for n, text in enumerate(asked):
         if found.get(n) != wanted[n]:
-            return f"`{question}` is {found.get(n)}, not {wanted[n]}"
+            return f"`{text}` is {found.get(n)}, not {wanted[n]}"
     counted = list(ask(program, [Task("sizes", c.tables.text([], c.order), SECONDS, MEBIBYTES)]))
     return "" if counted == [sizes(c)] else f"{counted} is not {sizes(c)}"

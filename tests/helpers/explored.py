@@ -107,7 +107,8 @@ class Explorers:
         sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
         (host / "stub.c").write_text("char pn_net[1];\n")
         made._run(host, *SHARED, "stub.c", "-o", LIBRARY)
-        made._run(host, "-c", *map(str, sources))
+        for part in sources:
+            made._run(host, "-c", str(part))
         objects = [str(f) for f in sorted(host.glob("*.o"))]
         made._run(host, "-rdynamic", *objects, LIBRARY, "-lm", "-o", "explore")
         others = [f for f in objects if not Path(f).name.startswith("explore")]
@@ -124,7 +125,7 @@ class Explorers:
             "-fPIC",
             *self.flags,
         ]
-        command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
+        command += [f"-I{cnative_folder() / 'include'}", "-I.", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]
 
@@ -148,7 +149,8 @@ class Explorers:
             command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", "net.c", "-o", LIBRARY]
             if not subprocess.run(command, cwd=folder, capture_output=True, check=False).returncode:
                 return
-        self._run(folder, *SHARED, "net.c", "-o", LIBRARY)
+        self._run(folder, "-c", "net.c")
+        self._run(folder, *SHARED, "net.o", "-o", LIBRARY)
 
     def explore(
         self,

@@ -128,6 +128,8 @@ objects = [{ name = "work", size = [0.1, 0.1, 0.1] }]
 [devices.belt]
 instance = "Belt"
 
+[devices.belt.base]
+y = -0.1
 [devices.belt.axes.door]
 kind = "slide"
 pose = { x = 3.0, z = 1.0, yaw = 90.0 }
@@ -175,6 +177,13 @@ acceleration = 0.4
 jerk = 4.0
 colour = [0.1, 0.1, 0.1]
 stop = "end"
+drives = ["further"]
+
+[devices.belt.axes.further]
+kind = "belt"
+pose = { x = 7.299038105676658, y = 0.75, z = 0.5, yaw = 30.0 }
+length = 0.5
+width = 0.4
 
 [sensors.gauge]
 variable = "v"
@@ -292,6 +301,7 @@ scene.floor = true
 parts.box.grip_tolerance = 0.02
 places.here.x = 0.9
 frames.corner.x = 0.2
+devices.belt.base.y = -0.2
 
 [[property]]
 name = "ends"
@@ -382,7 +392,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames, cell.zones]
         shown += [
             (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch, r.turning)
-            for r in cell.robots
+            for r in cell.moving
         ]
         shown += [
             (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()

@@ -10,12 +10,11 @@ from pathlib import Path
 import pytest
 
 from helpers.coloured_families import FAMILIES
-from helpers.random_linear import holds, random_linear, temporal_parts
-from helpers.random_tables import Graph, random_branching, random_condition
+from helpers.examined import bound, examined, numbers
+from helpers.random_tables import Graph
 from pn2code.contest import portfolio
 from pn2code.contest.engine import engine
-from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
-from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
+from pn2code.contest.examinations import asked
 from pn2code.contest.portfolio import answers, space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
@@ -26,9 +25,6 @@ from pn2code.unfold.unfold import unfold
 
 SECONDS = 600.0
 """Ends what hangs; nothing takes that long, on however busy a machine."""
-FORMULAS = 6
-"""Of each kind."""
-MOST_PARTS = 3
 
 
 @pytest.fixture(scope="module")
@@ -52,41 +48,6 @@ def read(path: Path) -> Tables:
     return tables
 
 
-def truths(graph: Graph) -> dict[str, bool]:
-    """What the examinations without formulas say."""
-    tables = graph.tables
-    totals = [
-        [sum(m[p] for p in places) for m in graph.markings] for places in tables.places.values()
-    ]
-    can = [graph.where(Op("E", (Op("F", (fireable(t),)),))) for t in tables.transitions]
-    everywhere = len(graph.markings)
-    return {
-        "ReachabilityDeadlock": any(not s for s in graph.successors),
-        "OneSafe": all(max(total) <= 1 for total in totals),
-        "StableMarking": any(len(set(total)) == 1 for total in totals),
-        "QuasiLiveness": all(0 in where for where in can),
-        "Liveness": all(len(where) == everywhere for where in can),
-    }
-
-
-def fireable(name: str) -> Formula:
-    """That a transition is enabled."""
-    return Fireable((name,))
-
-
-def questions(draw: random.Random, tables: Tables) -> Iterator[tuple[str, Formula]]:
-    """Random formulas of all kinds."""
-    for _ in range(FORMULAS):
-        path, operator = draw.choice(["EF", "AG"])
-        yield "ctl", Op(path, (Op(operator, (random_condition(draw, tables),)),))
-        yield "ctl", random_branching(draw, tables, 3)
-        while True:
-            f = random_linear(draw, tables, 3)
-            if len(temporal_parts(f)) <= MOST_PARTS:
-                break
-        yield "ltl", Op("A", (f,))
-
-
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
     net = FAMILIES[family]()
@@ -95,30 +56,17 @@ def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
     tables, own = read(path), net.tables()
     graph = Graph.of(own, 20_000)
     assert graph is not None
-    draw = random.Random(family)
-    expected: dict[str, bool | int] = {}
-    lines: list[Asked] = []
-    for name in GLOBAL:
-        lines += asked(tables, name, tmp_path)
-    expected |= truths(graph)
-    for number, (kind, f) in enumerate(questions(draw, own)):
-        lines.append(Asked(str(number), formula=f, kind=kind))
-        expected[str(number)] = holds(graph, f) if kind == "ltl" else 0 in graph.where(f)
-    for p in own.places:
-        lines.append(bound(tables, p))
-        expected[p] = max(sum(m[i] for i in own.places[p]) for m in graph.markings)
+    lines, expected = examined(random.Random(family), graph, tables)
     found = {a.name: a.value for a in answers(program, tables, lines, seconds=SECONDS)}
     assert found == expected
     sizes = space(program, tables, seconds=SECONDS, mebibytes=1024)
     assert sizes is not None
-    assert (sizes.states, sizes.arcs) == (len(graph.markings), graph.arcs)
-    assert sizes.tokens_in_place == max(max(m) for m in graph.markings)
-    assert sizes.tokens_in_marking == max(sum(m) for m in graph.markings)
-
-
-def bound(tables: Tables, place: str) -> Asked:
-    """The question for the most tokens of a place."""
-    return Asked(place, (Part("bound", tables.bound(0, Tokens((place,))).split(" ", 1)[1]),))
+    assert (
+        sizes.states,
+        sizes.arcs,
+        sizes.tokens_in_place,
+        sizes.tokens_in_marking,
+    ) == numbers(graph)
 
 
 def test_what_structural_methods_have_no_time_for_is_left_to_the_engine(

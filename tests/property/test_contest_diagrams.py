@@ -16,6 +16,7 @@ from helpers.diagram_cases import (
     questions,
     sanitized_engine,
 )
+from helpers.table_families import philosophers
 from pn2code.contest.engine import Answer, Space, Task, ask
 from pn2code.contest.tables import Tables
 
@@ -98,6 +99,18 @@ def test_nets_that_are_hardly_there(program: Path) -> None:
     assert nothing == [Space(1, 0, 0, 0, None, "DECISION_DIAGRAMS")]
     resting = asked(program, "sizes", Tables((0, 3), ({},), ({},), {}, {}).text([]))
     assert resting == [Space(1, 1, 3, 3, None, "DECISION_DIAGRAMS")]
+
+
+def test_what_many_transitions_do_is_one_step(program: Path) -> None:
+    """Philosophers, of whom all may have taken one fork: with one transition after the other it would take hours."""
+    tables = philosophers(1500)
+    text = tables.text(["0 reach dead", "1 ctl AG EX true", "2 ctl EX EX not dead"])
+    found = asked(program, "diagrams", text)
+    assert {a.number: a.value for a in found if isinstance(a, Answer)} == {
+        0: True,
+        1: False,
+        2: True,
+    }
 
 
 def test_an_order_without_all_places_is_refused(program: Path) -> None:

@@ -127,7 +127,14 @@ def test_linear_time_is_what_the_tableau_says(program: Path) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "only"),
-    [("ctl", ""), ("ltl", ""), ("ctl", "diagrams"), ("ctl", "ctl"), ("ltl", "ltl")],
+    [
+        ("ctl", ""),
+        ("ltl", ""),
+        ("ctl", "diagrams"),
+        ("ltl", "diagrams"),
+        ("ctl", "ctl"),
+        ("ltl", "ltl"),
+    ],
 )
 def test_methods(program: Path, kind: str, only: str) -> None:
     """Together and alone."""

@@ -20,7 +20,16 @@ from tools.elements.changes import changes
 from tools.elements.judge import Judge
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = ("riveting", "sorting", "shared-zone", "timed", "palletiser", "welding", "assembly")
+EXAMPLES = (
+    "riveting",
+    "sorting",
+    "shared-zone",
+    "timed",
+    "palletiser",
+    "machining",
+    "welding",
+    "assembly",
+)
 WHERE = ("refused", "program", "drawing", "check", "nowhere")
 
 

@@ -5,8 +5,9 @@
 ./dev geometry --pairs 400           pairs of moves a second of processor time: mostly far apart, and dense
 ./dev geometry --cells 40            random cells: two arms, half of them with tracks and a turntable, and an arm with
                                      a belt, a machine with door and clamp, and a table that turns; parts are
-                                     stacked: what collides in PyBullet, or cannot be done with a part, is never said to
-                                     be right; in each fourth of them an arm is placed anew, and what is proved of its
+                                     stacked, and sensors see the scene: what collides in PyBullet, or cannot be done
+                                     with a part, is never said to be right; in
+                                     each fourth of them an arm is placed anew, and what is proved of its
                                      new place is run as well
 """
 
@@ -27,6 +28,7 @@ from tools.geometry.wander import wander
 
 from helpers.machine_cells import machine_cell
 from helpers.netbuilder import cpn
+from helpers.sighted_cells import sighted_cell
 from helpers.two_arm_cells import two_arm_cell
 from helpers.welding_cell import varied
 from pn2code.cell.divide import divide
@@ -49,6 +51,7 @@ CELLS = (
     "minimal",
     "handover",
     "palletiser",
+    "machining",
     "shared-zone",
     "tending",
     "welding",
@@ -166,7 +169,12 @@ def placed(cell: Path, robot: str, out: Path, seed: int, walks: int) -> tuple[st
 
 
 def random_cell(number: int) -> tuple[str, str]:
-    """In turns two arms, two arms with tracks and a turntable, a welding pair, and an arm between devices that move."""
+    """In turns two arms, two arms with tracks and a turntable, a welding pair, and an arm between devices that move.
+
+    Each other one of the last asks sensors that see the scene.
+    """
+    if number % 8 == 7:
+        return sighted_cell(Random(number))
     if number % 4 == 3:
         return machine_cell(Random(number))
     if number % 4 == 2:

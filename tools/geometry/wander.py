@@ -12,6 +12,7 @@ from __future__ import annotations
 from random import Random
 
 import numpy as np
+from tools.geometry.eyes import Eyes
 
 from pn2code.geometry.graph import CellGraph
 from pn2code.robot.belts import until_stop
@@ -122,6 +123,7 @@ def _walk(
             parts.parts.stand(name, q)
         return joints
 
+    eyes = Eyes(graph, cell)
     state = 0
     pace = {owner: choice.choice([0.02, 0.1, 0.4]) for owner in arms}
     for step in range(steps):
@@ -136,6 +138,8 @@ def _walk(
         if free and (not busy or choice.random() < 0.5):
             element, target = choice.choice(free)
             owner = graph.elements[element].owner
+            if eyes.first(element):
+                element, target = eyes.as_seen(state, element, look(), parts.parts)
             commands = graph.commands(element)
             if owner in arms and commands:
                 begun = arms[owner]
@@ -143,6 +147,8 @@ def _walk(
             else:
                 for command in commands:  # of a device of which nothing moves
                     handle(graph.partition.owners[owner].name, command, None, parts)
+                if not eyes.first(element):
+                    element, target = eyes.as_seen(state, element, look(), parts.parts)
                 state = target
         elif busy:
             owner = choice.choice(sorted(busy))
@@ -157,6 +163,8 @@ def _walk(
                 if arm.left:
                     begun = arm
                 else:
+                    if not eyes.first(arm.element):
+                        arm.element, _ = eyes.as_seen(state, arm.element, look(), parts.parts)
                     state = dict(graph.arcs[state])[arm.element]
                     arm.element = -1
         else:

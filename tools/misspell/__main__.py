@@ -25,7 +25,16 @@ from tools.misspell.judge import Judge, Verdict
 from tools.misspell.mutants import mistakes
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = ("riveting", "sorting", "shared-zone", "timed", "palletiser", "welding", "assembly")
+EXAMPLES = (
+    "riveting",
+    "sorting",
+    "shared-zone",
+    "timed",
+    "palletiser",
+    "machining",
+    "welding",
+    "assembly",
+)
 RESULTS = ("refused", "no effect", "renamed", "option", "effect", "crash")
 
 

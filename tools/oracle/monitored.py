@@ -2,7 +2,9 @@
 
 The program `oracle` sends no monitors. Its modules are used here: they start the engine with a net, and what CPN Tools'
 editor sends of monitors (450) is sent as well. A net's answer: `errors` of each monitor's functions, the steps of the
-run and why it ended, the statistics of each collector, and the content of the files that were written.
+run, the number of the last one by the engine's own count (`step`: an occurrence after which a monitor raises counts,
+too, though the run that the oracle prints ends before it), why it ended, the statistics of each collector, and the
+content of the files that were written.
 """
 
 from __future__ import annotations
@@ -78,6 +80,7 @@ def ask(path: Path, monitors: Iterable[Monitor], *, steps: int) -> dict[str, Any
                     s.e.packet([False], [500, 3, 0, 0, 1], [t.get("id")])
         s.start()
         run = s.run(str(steps))
+        counted = s.e.evaluate("IntInf.toInt (step ());")[3]
         statistics = {
             m.name: _statistics(s, m)
             for m in found
@@ -92,6 +95,7 @@ def ask(path: Path, monitors: Iterable[Monitor], *, steps: int) -> dict[str, Any
         "accepted": True,
         "errors": errors,
         "steps": [x["transition"] for x in run["steps"]],
+        "step": int(re.findall(r"val it = (\d+) :", counted)[0]),
         "time": run["final_time"],
         "stop": run["stop"],
         "marking": [[r["id"], r["instance"], r["marking"]] for r in run["final_marking"]],

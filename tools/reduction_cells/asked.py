@@ -28,7 +28,7 @@ WRONG_PROPERTIES: dict[str, Change] = {
 LEAST = 2
 """Tokens of a place that gets a limit."""
 MOST_STATES = 100_000
-MOST = 6
+MOST = 8
 """Properties of a cell."""
 
 
@@ -58,11 +58,28 @@ def properties(r: Random, opened: OpenNet, partition: Partition) -> m.Properties
         lambda: f"ctl AF {condition()}",
         lambda: f"ctl AG EF {condition()}",
         lambda: f"ltl F {condition()}",
+        lambda: f"ctl AG ({condition()} -> AF {condition()})",
+        lambda: f"ctl {r.choice(['AG AF', 'EG', 'EF AG', 'AG EX', 'AF AG'])} {condition()}",
+        lambda: f"ctl {r.choice('AE')}[{condition()} U {condition()}]",
+        lambda: f"ltl G F {condition()}",
+        lambda: f"every {condition()} is followed by {condition()}",
         lambda: f"every fires({r.choice(fired)}) is followed by {condition()}",
         lambda: f"every fires({r.choice(fired)}) is followed by {condition()} within 1 firings",
     )
     texts = [r.choice(kinds)() for _ in range(MOST)]
     return gather(opened, texts, None, Diagnostics(), found=False).plain
+
+
+def of_part(
+    properties: m.Properties, part: Control, whole: Control, counts: Counter[str]
+) -> Iterator[str]:
+    """What a part of the states, and searches for runs, say otherwise than all states."""
+    if part.found is not None and not part.found.complete:
+        for p, mine, its in zip(properties.properties, part.answers, whole.answers, strict=False):
+            counts["properties asked of a part"] += 1
+            counts["properties that a part decides"] += mine["answer"] != "unknown"
+            if mine["answer"] not in (its["answer"], "unknown"):
+                yield f"property `{p.holds}`: a part says {mine['answer']}, the whole {its['answer']}"
 
 
 @frozen

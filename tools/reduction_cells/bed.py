@@ -100,10 +100,11 @@ class _Cell:
         turns_from: int | None,
         counts_from: int | None = None,
         properties: m.Properties = NONE,
+        most: int = MOST,
     ) -> Control | None:
         """The checks of the supervisor, and properties."""
         limits = Limits(
-            max_states=MOST,
+            max_states=most,
             threads=1,
             traces=0,
             turns_from=turns_from,
@@ -337,6 +338,9 @@ def _of_properties(
     if whole is None or whole.found is None or not whole.found.complete:
         return
     yield from told.judged(whole, counts)
+    part = cell.checked(None, properties=properties, most=r.choice(FEW))
+    if part is not None:
+        yield from asked.of_part(properties, part, whole, counts)
     for name, change in asked.WRONG_PROPERTIES.items() if shown is not None else ():
         other = asked.OfStates.of(properties, cell.partition, cell.plan, change)
         if other is not None and any(other.wrong(whole)):

@@ -67,6 +67,7 @@ static void print_help(void)
         "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
         "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
         "  --seed N            of random numbers (default 1)\n"
+        "  --shuffle N         depth first, successors the other way round (1), or by chance, of which N is the seed\n"
         "  --still             traces say that these are the same at each step\n"
         "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
         "  --whole P,Q,..      places of which all colours are printed\n"
@@ -185,6 +186,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--heaps") == 0) && read_text(value, &options->heaps))
            || ((strcmp(option, "--most-heaped") == 0) && read_number(value, UINT64_MAX, &options->most_heaped))
            || ((strcmp(option, "--initial") == 0) && read_text(value, &options->initial))
+           || ((strcmp(option, "--shuffle") == 0) && read_number(value, UINT64_MAX, &options->shuffle))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 

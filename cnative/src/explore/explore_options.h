@@ -19,6 +19,8 @@ typedef struct ex_options {
     uint64_t memory;     /* bytes */
     uint64_t arena;      /* bytes of each thread, for lists and strings */
     uint64_t seed;
+    uint64_t shuffle;   /* the order of successors, depth first: 0 as they are found, 1 the other way round, others by
+                         chance */
     bool is_still;      /* traces say that random numbers are the same at each step */
     uint64_t lay_again; /* states after which the layout of keys is looked at once more */
     bool has_graph;     /* wanted */

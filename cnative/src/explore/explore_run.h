@@ -114,6 +114,7 @@ typedef struct ex_run {
     bool is_choiceless;           /* it has been looked in all states, and they never do: all orders are one */
     struct ex_graph *graph;       /* of explore_graph.c; NULL: none */
     struct ex_bindings *bindings; /* of explore_bindings.c; NULL: none are told */
+    _Atomic bool has_avoided;     /* states have not been expanded, as was asked for */
     bool is_seen_whole;           /* all states have been expanded, and none was taken for another one */
     bool has_arcs;                /* the graph of them has been made, with all arcs */
     bool has_components;          /* and gone through: components, home, liveness, fairness */

@@ -43,6 +43,10 @@ static void answer(run_t *r, tb_question_t *q)
         answer_bound(r, q);
         return;
     }
+    if (q->kind == TB_LTL) {
+        tb_say(q, sy_accepts(&r->d, &q->automaton) ? TB_YES : TB_NO, METHOD);
+        return;
+    }
     const sy_node_t where = sy_where(&r->d, q->formula);
     const bool is_so =
         (q->kind == TB_REACH) ? (where != (sy_node_t)SY_NONE) : sy_contains(&r->d, where, r->job->net.initial);
@@ -103,6 +107,7 @@ static void *work(void *argument)
         answer_all(r, TB_BOUND);
         answer_all(r, TB_REACH);
         answer_all(r, TB_CTL);
+        answer_all(r, TB_LTL);
     }
     return NULL;
 }

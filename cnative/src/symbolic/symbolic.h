@@ -25,7 +25,15 @@ enum {
 };
 
 /* What a cached result is the result of; sums have numbers of their own from SY_SUM on. */
-typedef enum sy_op { SY_UNION = 1, SY_INTERSECTION, SY_DIFFERENCE, SY_PLAIN, SY_SATURATION = 8, SY_SUM = 32 } sy_op_t;
+typedef enum sy_op {
+    SY_UNION = 1,
+    SY_INTERSECTION,
+    SY_DIFFERENCE,
+    SY_PLAIN,
+    SY_WITHOUT,
+    SY_SATURATION = 8,
+    SY_SUM = 32
+} sy_op_t;
 
 typedef struct sy_result {
     uint32_t op;
@@ -82,6 +90,7 @@ typedef struct sy_diagrams {
     tb_count_t *most; /* level -> the most tokens, once the state space is known */
     sy_node_t space;  /* all reachable markings */
     sy_node_t dead;   /* those in which nothing is enabled; SY_ANY: not worked out yet */
+    sy_node_t idle;   /* those in which a transition is enabled that changes nothing; likewise */
     jmp_buf given_up; /* where to go on when time is over, or a number is too large */
 } sy_diagrams_t;
 
@@ -141,6 +150,8 @@ void sy_make_events(sy_diagrams_t *d);
 
 /* What a path makes of a set, as far as it lies in `within`. */
 sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t path);
+/* What all transitions that change something make of a set, once, as far as it lies in `within`, which is not SY_ANY. */
+sy_node_t sy_step_of_all(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 /* A set with all that transitions make of it, again and again, as far as that lies in `within`. */
 sy_node_t sy_saturated(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 
@@ -172,5 +183,18 @@ void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f);
 sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f);
 /* sum <= limit */
 sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f);
+/* Nothing is enabled. */
+sy_node_t sy_where_dead(sy_diagrams_t *d);
+/* The markings of `within` from which a transition leads into a set. */
+sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within);
+/* The markings to which a transition leads from a set. */
+sy_node_t sy_after(sy_diagrams_t *d, sy_node_t n);
+/* The reachable markings in which none of some transitions is enabled (symbolic_enabled.c). */
+sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count);
+
+/* --- automata (symbolic_linear.c) --------------------------------------------------------------------------------- */
+
+/* Whether an automaton accepts a run from the initial marking; a run that ends in a dead marking stays there. */
+bool sy_accepts(sy_diagrams_t *d, const tb_automaton_t *a);
 
 #endif

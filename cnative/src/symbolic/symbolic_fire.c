@@ -11,7 +11,7 @@
 #include "symbolic.h"
 
 /* Offsets to sy_events_t.op: what has been done. */
-enum { CLOSED = 0, FIRED = 1, LIFTED = 2 };
+enum { CLOSED = 0, FIRED = 1, LIFTED = 2, ONCE = 3 };
 
 static sy_node_t lifted(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within, uint32_t below);
 
@@ -145,6 +145,47 @@ static sy_node_t fired(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_n
 sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t path)
 {
     return fired(d, NULL, n, within, path);
+}
+
+/* --- one step of all ---------------------------------------------------------------------------------------------- */
+
+/* Add what the events of a level make of one edge of a node at that level. */
+static void step_from(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, uint32_t level, sy_node_t within,
+                      tb_count_t tokens, sy_node_t child)
+{
+    add(d, begun, tokens, sy_step_of_all(d, e, child, sy_below(d, within, level, tokens)));
+    for (uint32_t i = e->first[level]; i < e->first[level + 1U]; i++) {
+        const sy_step_t s = d->step[e->event[i]];
+        if (tokens >= s.take) {
+            const tb_count_t then = after(&s, tokens);
+            add(d, begun, then, sy_fire(d, child, sy_below(d, within, level, then), s.rest));
+        }
+    }
+}
+
+/* Events that begin further down leave the tokens at this level as they are: what is above is walked through once for
+ * all of them. Where a set leaves out a level, only what lies in `within` may have tokens there afterwards. */
+sy_node_t sy_step_of_all(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within)
+{
+    const uint32_t level = (sy_level(d, n) > sy_level(d, within)) ? sy_level(d, n) : sy_level(d, within);
+    if ((n == (sy_node_t)SY_NONE) || (within == (sy_node_t)SY_NONE) || (level == 0U)) {
+        return (sy_node_t)SY_NONE;
+    }
+    sy_node_t found;
+    if (sy_find(d, (uint32_t)e->op + (uint32_t)ONCE, n, within, 0U, &found)) {
+        return found;
+    }
+    const uint64_t begun = sy_begin(d);
+    if (sy_level(d, n) < level) {
+        step_from(d, e, begun, level, within, 0U, n);
+    } else {
+        for (uint32_t i = 0U; i < sy_count(d, n); i++) {
+            step_from(d, e, begun, level, within, sy_tokens(d, n, i), sy_child(d, n, i));
+        }
+    }
+    found = sy_end(d, begun, level);
+    sy_note(d, (uint32_t)e->op + (uint32_t)ONCE, n, within, 0U, found);
+    return found;
 }
 
 /* --- closing ------------------------------------------------------------------------------------------------------ */

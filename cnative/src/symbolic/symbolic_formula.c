@@ -105,44 +105,58 @@ sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f)
 
 /* --- transitions -------------------------------------------------------------------------------------------------- */
 
-static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
-{
-    sy_node_t found = (sy_node_t)SY_NONE;
-    for (uint32_t i = 0U; i < f->count; i++) {
-        const sy_node_t one = sy_fire(d, d->space, (sy_node_t)SY_ANY, d->test[f->transition[i]]);
-        found = sy_union(d, found, one);
-    }
-    return found;
-}
-
-static sy_node_t where_dead(sy_diagrams_t *d)
-{
-    if (d->dead == (sy_node_t)SY_ANY) {
-        sy_node_t left = d->space;
-        for (uint32_t t = 0U; (t < d->net->transitions) && (left != (sy_node_t)SY_NONE); t++) {
-            left = sy_difference(d, left, sy_fire(d, left, (sy_node_t)SY_ANY, d->test[t]));
-        }
-        d->dead = left;
-    }
-    return d->dead;
-}
-
-/* The markings of `within` from which a transition leads into a set. */
-static sy_node_t before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
-{
-    sy_node_t found = (sy_node_t)SY_NONE;
-    for (uint32_t t = 0U; t < d->net->transitions; t++) {
-        found = sy_union(d, found, sy_fire(d, n, within, d->backwards.path[t]));
-    }
-    return found;
-}
-
-/* --- time --------------------------------------------------------------------------------------------------------- */
-
 static sy_node_t other(sy_diagrams_t *d, sy_node_t n)
 {
     return sy_difference(d, d->space, n);
 }
+
+static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    return other(d, sy_where_none(d, f->transition, f->count));
+}
+
+sy_node_t sy_where_dead(sy_diagrams_t *d)
+{
+    if (d->dead == (sy_node_t)SY_ANY) {
+        uint32_t *all = tb_new((size_t)d->net->transitions + 1U, sizeof *all);
+        for (uint32_t t = 0U; t < d->net->transitions; t++) {
+            all[t] = t;
+        }
+        d->dead = sy_where_none(d, all, d->net->transitions);
+        tb_free(all, (size_t)d->net->transitions + 1U, sizeof *all);
+    }
+    return d->dead;
+}
+
+static sy_node_t where_idle(sy_diagrams_t *d)
+{
+    if (d->idle == (sy_node_t)SY_ANY) {
+        uint32_t *idle = tb_new((size_t)d->net->transitions + 1U, sizeof *idle);
+        uint32_t count = 0U;
+        for (uint32_t t = 0U; t < d->net->transitions; t++) {
+            if (d->net->changes.first[t] == d->net->changes.first[t + 1U]) {
+                idle[count] = t;
+                count++;
+            }
+        }
+        d->idle = other(d, sy_where_none(d, idle, count));
+        tb_free(idle, (size_t)d->net->transitions + 1U, sizeof *idle);
+    }
+    return d->idle;
+}
+
+sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
+{
+    const sy_node_t stays = sy_intersection(d, sy_intersection(d, n, within), where_idle(d));
+    return sy_union(d, stays, sy_step_of_all(d, &d->backwards, n, within));
+}
+
+sy_node_t sy_after(sy_diagrams_t *d, sy_node_t n)
+{
+    return sy_union(d, sy_intersection(d, n, where_idle(d)), sy_step_of_all(d, &d->forwards, n, d->space));
+}
+
+/* --- time --------------------------------------------------------------------------------------------------------- */
 
 static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 {
@@ -151,9 +165,12 @@ static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 
 static sy_node_t exists_always(sy_diagrams_t *d, sy_node_t p)
 {
-    const sy_node_t ends = sy_intersection(d, where_dead(d), p);
+    if (p == d->space) {
+        return p; /* wherever a path goes */
+    }
+    const sy_node_t ends = sy_intersection(d, sy_where_dead(d), p);
     for (;;) {
-        const sy_node_t kept = sy_union(d, ends, before(d, p, p));
+        const sy_node_t kept = sy_union(d, ends, sy_before(d, p, p));
         if (kept == p) {
             return p;
         }
@@ -172,8 +189,8 @@ static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
 {
     const sy_node_t p = sy_where(d, f->part[0]);
     switch (f->op) {
-    case TB_EX: return before(d, p, d->space);
-    case TB_AX: return other(d, before(d, other(d, p), d->space));
+    case TB_EX: return sy_before(d, p, d->space);
+    case TB_AX: return other(d, sy_before(d, other(d, p), d->space));
     case TB_EF: return exists_until(d, d->space, p);
     case TB_AF: return other(d, exists_always(d, other(d, p)));
     case TB_EG: return exists_always(d, p);
@@ -204,7 +221,7 @@ sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f)
     case TB_OR: return where_parts(d, f);
     case TB_SUM: return sy_where_sum(d, f);
     case TB_ENABLED: return where_enabled(d, f);
-    case TB_DEAD: return where_dead(d);
+    case TB_DEAD: return sy_where_dead(d);
     default: return where_temporal(d, f);
     }
 }

@@ -33,6 +33,7 @@ void sy_init(sy_diagrams_t *d, const tb_net_t *net, const uint32_t *order)
     d->edge_room = 1U << 12U;
     d->edges = tb_new(d->edge_room, sizeof *d->edges);
     d->dead = (sy_node_t)SY_ANY;
+    d->idle = (sy_node_t)SY_ANY;
 }
 
 /* --- looking at nodes --------------------------------------------------------------------------------------------- */

@@ -36,6 +36,7 @@ from pn2code.cell.named_elsewhere import (
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
+from pn2code.cell_file.devices import DEVICE_PLACE
 from pn2code.cell_file.geometry import ROBOT
 from pn2code.cell_file.keys import Key
 from pn2code.cell_file.logic import (
@@ -121,8 +122,8 @@ def _config(
             },
             **{key: merged.get(key, {}) for key in PLACED if key != "robots"},
             "devices": {
-                name: {"axes": table["axes"]}
-                for name, table in table_of(data.get("devices")).items()
+                name: {key: table[key] for key in ("base", "axes") if key in table}
+                for name, table in table_of(merged.get("devices")).items()
                 if isinstance(table, dict) and "axes" in table
             },
             "primitives": table_of(data.get("primitives")),
@@ -153,9 +154,10 @@ def _apply_layout(
         r.keys(table, at, LAYOUT.names())
         r.get(table, at, LAYOUT["description"])
         known = table_of(data.get("robots"))
-        for key in PLACED:
+        for key in (*PLACED, "devices"):
             r.get(table, at, replace(LAYOUT[key], expected="a table"))
         _check_frames(data, layouts, name, r)
+        _check_devices(data, table, at, r)
         robots = table_of(table.get("robots"))
         for robot in robots:
             one = Key(robot, "table", "", "a table", inner=LAYOUT["robots"].inner)
@@ -186,6 +188,25 @@ def _apply_layout(
         return "", data
     table = {k: v for k, v in layouts[layout].items() if k != "description"}
     return layout, _merge(data, table)
+
+
+def _check_devices(data: dict[str, Any], layout: dict[str, Any], at: KeyPath, r: Tables) -> None:
+    """A layout says where devices stand of which something moves; all others are nowhere."""
+    moving = {n: t for n, t in table_of(data.get("devices")).items() if "axes" in table_of(t)}
+    devices = table_of(layout.get("devices"))
+    for device in devices:
+        own: KeyPath = (*at, "devices", device)
+        one = Key(device, "table", "", "a table", inner=DEVICE_PLACE)
+        changed = r.get(devices, (*at, "devices"), one, {})
+        if device not in moving:
+            r.d.error(
+                codes.CELL_KEY,
+                f"layout `{at[-1]}` places an unknown device `{device}`",
+                r.at(*own),
+                hint=did_you_mean(device, moving) or "only devices with `axes` stand anywhere",
+            )
+        else:
+            r.keys(table_of(changed), own, DEVICE_PLACE.names())
 
 
 def _check_frames(data: dict[str, Any], layouts: dict[str, Any], name: str, r: Tables) -> None:
@@ -552,6 +573,13 @@ def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
                 f"`{name}` is a robot and a device",
                 r.at(*at),
                 hint="give the device another name",
+            )
+        if "base" in table and "axes" not in table:
+            r.d.error(
+                codes.CELL_KEY,
+                f"device `{name}` has a `base`, but nothing of it moves: it stands nowhere",
+                r.at(*at, "base"),
+                hint="remove it, or say what moves (`[devices.NAME.axes.AXIS]`)",
             )
         instance = r.get(table, at, DEVICE["instance"], "")
         yield RobotConfig(name, instance, r.at(*at, "instance"))

@@ -103,8 +103,10 @@ def fixed_of(
     axis, slides = along[0]
     for section in ("robots", "devices"):
         for table_ in table_of(data.get(section)).values():
-            own = table_of(table_of(table_of(table_).get("axes")).get(axis))
-            said = {"from": 0.0, "to": own.get("length")} if own.get("kind") == "belt" else own
+            axes = table_of(table_of(table_).get("axes"))
+            said = own = table_of(axes.get(axis))
+            if own.get("kind") == "belt":
+                said = {"from": 0.0, "to": _farthest(own, axes)}
             ends = [x for key in ("from", "to") if isinstance(x := said.get(key), int | float)]
             if len(ends) < 2:
                 continue  # that is reported elsewhere
@@ -118,6 +120,15 @@ def fixed_of(
                 )
                 return None
     return to * 1000.0 if slides else to
+
+
+def _farthest(belt: dict[str, Any], axes: dict[str, Any]) -> float | None:
+    """How far a belt may run, with those that it drives; None: a mistake that is reported elsewhere."""
+    drives = belt.get("drives", [])
+    names = drives if isinstance(drives, list) else []
+    lengths = [t.get("length") for t in (belt, *(table_of(axes.get(n)) for n in names))]
+    known = [x for x in lengths if isinstance(x, int | float)]
+    return sum(known) if len(known) == len(lengths) else None
 
 
 def expect_named(r: Tables, data: dict[str, Any], name: str, at: KeyPath, section: str) -> None:

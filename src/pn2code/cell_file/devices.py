@@ -6,6 +6,18 @@ from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, lengths, pace_o
 from pn2code.cell_file.keys import Key, Section
 
 _SLIDE, _SWING, _CLAMP, _BELT = ("slide",), ("swing",), ("clamp",), ("belt",)
+DEVICE_PLACE = Section(
+    (
+        Key(
+            "base",
+            "table",
+            "Where it stands in the world, with all its axes: their poses are in this frame.",
+            POSE_WORDS,
+            inner=POSE,
+        ),
+    )
+)
+"""What layouts can change of a device of which something moves."""
 DEVICE_AXIS = Section(
     (
         Key(
@@ -20,8 +32,9 @@ DEVICE_AXIS = Section(
         Key(
             "pose",
             "table",
-            "Its frame in the world: of a slide at 0; a swing turns about its z; of a clamp the middle between its "
-            "jaws, which close along its x; of a belt the middle of its beginning, on top of it: it runs along x.",
+            "Its frame in that of the device (`base`), which is the world unless it says otherwise: of a slide at 0; a "
+            "swing turns about its z; of a clamp the middle between its jaws, which close along its x; of a belt the "
+            "middle of its beginning, on top of it: it runs along x.",
             POSE_WORDS,
             inner=POSE,
         ),
@@ -87,6 +100,14 @@ DEVICE_AXIS = Section(
             "text",
             "A name of `[places]`: the belt stops where the first part on it comes so far.",
             "the name of a place",
+            only=_BELT,
+        ),
+        Key(
+            "drives",
+            "texts",
+            "Belts of this device that go on in line where it ends, the nearest first: they run whenever it does, as "
+            "far as it does, and take its parts on.",
+            "a list of names of belts of this device",
             only=_BELT,
         ),
     ),

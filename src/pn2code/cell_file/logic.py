@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
-from pn2code.cell_file.devices import DEVICE_AXIS
+from pn2code.cell_file.devices import DEVICE_AXIS, DEVICE_PLACE
 from pn2code.cell_file.keys import Key, Section
 
 NET = Section(
@@ -321,6 +321,7 @@ DEVICE = Section(
             entry="NAME",
             is_word=True,
         ),
+        *DEVICE_PLACE,
     )
 )
 SENSOR = Section(

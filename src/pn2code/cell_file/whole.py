@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pn2code.cell_file.devices import DEVICE_PLACE
 from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, ZONE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
@@ -64,7 +65,7 @@ _PLACED = (
     ),
 )
 PLACED = tuple(key.name for key in _PLACED)
-"""The sections that a layout can change."""
+"""The sections that a layout can change, as far as it likes; of devices it changes `base`."""
 
 
 def _in_layout(key: Key) -> Key:
@@ -77,6 +78,14 @@ LAYOUT = Section(
     (
         Key("description", "text", "What is special about it.", "a text", default=""),
         *map(_in_layout, _PLACED),
+        Key(
+            "devices",
+            "named",
+            "Where a device stands, of which something moves.",
+            inner=DEVICE_PLACE,
+            entry="NAME",
+            is_word=True,
+        ),
     ),
     is_partial=True,
 )

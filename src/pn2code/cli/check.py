@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.channel_table import lines as channel_lines
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
@@ -102,7 +103,14 @@ def check(
     _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full)
     d = Diagnostics()
     with in_time(max_seconds, net, "the net was checked", form):
-        checked = examined(net, parse_values(settings), d, int_bits=int_bits, inputs=inputs)
+        checked = examined(
+            net,
+            parse_values(settings),
+            d,
+            int_bits=int_bits,
+            inputs=inputs,
+            kept=KeptAnswers.of_user(),
+        )
     result = checked.examined
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.base.progress_line import Line
 from pn2code.cell.locate import locate
 from pn2code.cli.nets import in_time, refuse_wide
@@ -98,6 +99,7 @@ def conform(
             generated=generated,
             checked=not unchecked,
             inputs=inputs,
+            kept=KeptAnswers.of_user(),
             stage=progress.stage,
         )
     if found is None:

@@ -13,6 +13,7 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
+from pn2code.contest import ptnet
 from pn2code.contest.engine import Space, engine
 from pn2code.contest.examinations import ALL, SPACE, Asked, asked
 from pn2code.contest.formulas import FormulaError
@@ -89,10 +90,12 @@ def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]] 
     It leaves with a report when the net is wrong.
     """
     d = Diagnostics()
-    net = front.load(folder / "model.pnml", d, compute=compute)
-    if net is None:
-        stop(d, Format.FULL)
-    tables = _tables(net, d)
+    tables = ptnet.tables_of(folder / "model.pnml")
+    if tables is None:
+        net = front.load(folder / "model.pnml", d, compute=compute)
+        if net is None:
+            stop(d, Format.FULL)
+        tables = _tables(net, d)
     if tables is None:
         return None
     return tables, [] if examination == SPACE else asked(tables, examination, folder)

@@ -8,6 +8,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from pn2code import pipeline
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -62,7 +63,12 @@ def generate(
         _expect_writable(output)
     with in_time(max_seconds, net, "the programs were generated, so nothing was written", form):
         result = pipeline.generate(
-            net, d, values=parse_values(settings), checked=not unchecked, inputs=inputs
+            net,
+            d,
+            values=parse_values(settings),
+            checked=not unchecked,
+            inputs=inputs,
+            kept=KeptAnswers.of_user(),
         )
     if result is None:
         stop(d, form)

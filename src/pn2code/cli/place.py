@@ -270,6 +270,10 @@ def _text(
         yield f"  unfinished, the time was up: {found.unfinished} (`--max-seconds`)"
     if found.open:
         yield f"  the arms may have more to do: {found.open}"
+    if found.regardless:
+        yield "NO: this does not depend on what may be moved, so nothing was searched:"
+        yield f"    {found.regardless}"
+        return
     if not f.ranked:
         if found.unfinished:
             yield "NOT KNOWN: nothing was found in that time from which everything is reached as wished"
@@ -394,6 +398,7 @@ def _row(found: Placed, record: RunRecord | None, files: Sequence[Path]) -> dict
         ],
         "open": found.open or None,
         "unfinished": found.unfinished or None,
+        "regardless": found.regardless or None,
         "run": None
         if record is None
         else {"verdict": record.verdict, "reason": record.reason or None, "time_s": record.time},

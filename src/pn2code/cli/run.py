@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.base.os_reason import os_reason
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.options import (
@@ -209,6 +210,7 @@ def run(
         looks=(pictures or video) and cycles is None,
         seed=seed,
         checked=not unchecked,
+        kept=KeptAnswers.of_user(),
     )
     if cycles is not None:
         from pn2code.cli.run_cycles import rates, run_many

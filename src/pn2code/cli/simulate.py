@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +12,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.readable import readable
+from pn2code.base.whole_file import whole_file
 from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
@@ -30,17 +32,22 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.game.report import places
 from pn2code.simulate.choose import Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
 from pn2code.simulate.codes import TRACE_UNWRITABLE
 from pn2code.simulate.progress import ProgressLine
+from pn2code.simulate.replications import Replications, replicated
+from pn2code.simulate.replications import text as replications_text
 from pn2code.simulate.report import text
 from pn2code.simulate.run import Outcome, Request
 from pn2code.trace.script import TraceRefusedError
 from pn2code.trace.writing import TraceUnwritableError
 from pn2code.verdict.opened import OpenNet, as_traced
+from pn2code.verify.codes import REPORT_UNWRITABLE
+from pn2code.verify.report.performance_page import of_one, of_several
 
 EPILOG = """Examples:
 
@@ -49,6 +56,8 @@ EPILOG = """Examples:
   pn2code simulate net.cpn --until 1000 --json
 
   pn2code simulate net.cpn --replay run.trace.jsonl --steps 100
+
+  pn2code simulate net.cpn --until 10000 --replications 20 --report performance.html
 """
 
 DEFAULT_STEPS = 1000
@@ -61,7 +70,7 @@ def simulate(
         typer.Option(
             metavar="N",
             min=0,
-            help="Stop after N steps (default: 1000; with --until there is no limit).",
+            help="Stop after N steps (default: 1000; a timed net with --until has no limit).",
             show_default=False,
         ),
     ] = None,
@@ -103,6 +112,22 @@ def simulate(
     breakpoints: Annotated[
         bool, typer.Option("--breakpoints/--no-breakpoints", help="Stop the run at breakpoints.")
     ] = True,
+    replications: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=2,
+            help="Simulate N times, with N seeds, and print averages of the data collectors with confidence intervals.",
+            show_default=False,
+        ),
+    ] = None,
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write what the data collectors say to this file, .html (or .htm).",
+        ),
+    ] = None,
     everything: Annotated[
         bool,
         typer.Option("--all", help="Show all places, not only those whose marking has changed."),
@@ -123,6 +148,13 @@ def simulate(
     """
     if trace is not None and str(trace) != "-":
         _check_writable(trace, form)
+    if report is not None:
+        _check_report(report, form)
+    if replications is not None and (trace is not None or replay is not None):
+        raise typer.BadParameter(
+            "a trace is of one run: leave one of them out",
+            param_hint="--replications / " + ("--replay" if trace is None else "--trace"),
+        )
     if replay is not None and inputs is not None:
         raise typer.BadParameter(
             "a trace that is repeated says itself what the places begin with: leave one of them out",
@@ -142,12 +174,13 @@ def simulate(
     _check_trace(trace, replay, Path(opened.flat.file))
     d = Diagnostics()
     program = monitors_of(opened.examined, d) if monitors else None
+    found: Replications | None = None
     with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
         request = Request(
             net=opened.flat,
             initial=opened.initial,
             storage=opened.storage,
-            steps=DEFAULT_STEPS if steps is None and until is None else steps,
+            steps=_default_steps(opened, until) if steps is None else steps,
             seed=seed,
             until=limit,
             trace=trace,
@@ -158,19 +191,64 @@ def simulate(
             progress=progress.update,
             interrupted=interrupts.is_wanted,
         )
-        outcome = _made(request, engine, d, form)
+        if replications is not None:
+            found = replicated(request, replications, partial(_another, engine, d, form))
+            outcome = found.outcomes[-1]
+        else:
+            outcome = _made(request, engine, d, form)
     if outcome.failure is not None:
         outcome.failure.report(d, outcome.steps)
     if outcome.refusal:
         d.error(TRACE_REFUSED, outcome.refusal, Origin(str(replay)))
+    flat = opened.flat
+    if report is not None:
+        _write_report(report, flat, outcome, found, d)
     if not as_json and not quiet:
-        typer.echo(text(opened.flat, outcome, everything=everything))
+        if found is None:
+            typer.echo(text(flat, outcome, everything=everything))
+        else:
+            typer.echo(replications_text(flat.file, found, timed=flat.timed))
     print_diagnostics(d.sorted(), form)
     if as_json:
-        typer.echo(json.dumps(_json(opened, outcome), indent=1))
+        said = _json(opened, outcome) if found is None else found.json()
+        typer.echo(json.dumps(said, indent=1))
+    if any(item.code == REPORT_UNWRITABLE for item in d):
+        raise typer.Exit(Exit.USAGE)
     code = _code(outcome)
     if code:
         raise typer.Exit(code)
+
+
+def _another(
+    engine: Engine | None, d: Diagnostics, form: Format, request: Request, number: int
+) -> Outcome:
+    """One of several simulations; what is said of the first one is not repeated."""
+    return _made(request, engine, d if number == 1 else Diagnostics(), form)
+
+
+def _check_report(path: Path, form: Format) -> None:
+    """A report that cannot be written is told of before the run."""
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise typer.BadParameter(f"`{path}` does not end in .html or .htm", param_hint="--report")
+    why = why_file_unwritable(path)
+    if why:
+        d = Diagnostics()
+        d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {why}", Origin(str(path)))
+        print_diagnostics(d.sorted(), form)
+        raise typer.Exit(Exit.USAGE)
+
+
+def _write_report(
+    path: Path, net: FlatNet, outcome: Outcome, found: Replications | None, d: Diagnostics
+) -> None:
+    page = of_one(net, outcome) if found is None else of_several(net, found)
+    try:
+        with whole_file(path) as beside:
+            beside.write_text(page, encoding="utf-8")
+    except OSError as problem:
+        d.error(
+            REPORT_UNWRITABLE, f"cannot write `{path}`: {os_reason(problem)}", Origin(str(path))
+        )
 
 
 def _check_trace(trace: Path | None, *read: Path | None) -> None:
@@ -182,6 +260,11 @@ def _check_trace(trace: Path | None, *read: Path | None) -> None:
     for other in read:
         if other is not None and trace.exists() and other.exists() and trace.samefile(other):
             raise typer.BadParameter(f"`{trace}` is read by this run", param_hint="--trace")
+
+
+def _default_steps(opened: OpenNet, until: str | None) -> int | None:
+    """Where nothing else ends a run; a net without model time never comes to one."""
+    return None if until is not None and opened.flat.timed else DEFAULT_STEPS
 
 
 def _time(until: str | None, opened: OpenNet) -> int | float | None:

@@ -13,6 +13,7 @@ from pathlib import Path
 from pn2code import pipeline
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.verdict.opened import OpenNet
@@ -72,7 +73,12 @@ class Subject:
         try:
             with deadline.enforced():
                 made = pipeline.generate(
-                    path, d, values=values, int_bits=int_bits, inputs=opened.inputs
+                    path,
+                    d,
+                    values=values,
+                    int_bits=int_bits,
+                    inputs=opened.inputs,
+                    kept=KeptAnswers.of_user(),
                 )
         except TimeIsOverError:
             return Subject(tuple(rows), "No programs were generated: the time was up.")

@@ -399,6 +399,7 @@ _RESTS = {
     basis.ARCS: "all markings and arcs",
     basis.COMPONENTS: "all components",
     basis.MARKING: "a marking that was reached",
+    basis.PART: "a part that decides",
     basis.RUN: "a run",
     basis.NET: "the net itself",
 }

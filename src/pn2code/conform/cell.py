@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner
 from pn2code.conform import core, data, declared, folder, robot, supervisor
@@ -80,6 +81,7 @@ def conform_cell(
     generated: Path | None = None,
     checked: bool = True,
     inputs: Path | None = None,
+    kept: KeptAnswers | None = None,
     stage: Callable[[str], None] = lambda _: None,
 ) -> Conformance | None:
     """Compares all programs of a cell, or the compiled net alone; None after an error that was reported.
@@ -93,6 +95,7 @@ def conform_cell(
         generated: a folder with generated files, which may have been edited; None: they are generated now.
         checked: whether the supervisor must pass its checks (docs/execution.md).
         inputs: other input files than those beside cell.toml, as for `input_files.begin`.
+        kept: what earlier commands have proved of the supervisor.
         stage: hears what is done next.
     """
 
@@ -101,7 +104,14 @@ def conform_cell(
         begin(net, config, d, is_started=True, given=inputs)
 
     made = generate(
-        path, d, values=values, int_bits=int_bits, checked=checked, examine=examine, inputs=inputs
+        path,
+        d,
+        values=values,
+        int_bits=int_bits,
+        checked=checked,
+        examine=examine,
+        inputs=inputs,
+        kept=kept,
     )
     if made is None:
         return None

@@ -18,7 +18,7 @@ from pn2code.contest.tables import Tables
 from pn2code.symbolic.order import orders
 
 METHOD = "diagrams"
-KINDS = ("reach", "bound", "ctl")
+KINDS = ("reach", "bound", "ctl", "ltl")
 """The kinds of questions that it can answer."""
 
 _SHARES = (0.1, 0.15, 0.15, 0.6)

@@ -13,11 +13,12 @@ from __future__ import annotations
 import subprocess
 import tempfile
 import threading
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import field, replace
 from pathlib import Path
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
@@ -99,7 +100,11 @@ Said = SimpleQueue[Answer | Space | Exception | None]
 
 
 def ask(
-    program: Path, lanes: Sequence[Task | Iterable[Task]], said: Said | None = None
+    program: Path,
+    lanes: Sequence[Task | Iterable[Task]],
+    said: Said | None = None,
+    *,
+    until: float | None = None,
 ) -> Iterator[Answer | Space]:
     """The answers of all lanes side by side, as they come; processes end with the iteration.
 
@@ -107,37 +112,50 @@ def ask(
         program: the engine.
         lanes: tasks, which may be made when the lane comes to them.
         said: where others say what they know meanwhile; their answers come, too.
+        until: when to stop at the latest, on the monotonic clock, even if a lane is still making a task.
 
     Raises:
         RuntimeError: the engine did not understand its tables.
     """
     said = SimpleQueue() if said is None else said
-    running = [_Lane(program, [x] if isinstance(x, Task) else x, said) for x in lanes]
-    try:
-        for lane in running:
-            lane.start()
-        left = len(running)
-        while left:
-            found = said.get()
-            if found is None:
-                left -= 1
-            elif isinstance(found, Exception):
-                raise RuntimeError(f"the engine for tables: {found}") from found
-            else:
-                yield found
-    finally:
-        for lane in running:
-            lane.end()
+    with tempfile.TemporaryDirectory(prefix="pn2code-", ignore_cleanup_errors=True) as folder:
+        running = [
+            _Lane(program, [x] if isinstance(x, Task) else x, said, Path(folder) / f"{i}.tables")
+            for i, x in enumerate(lanes)
+        ]
+        try:
+            for lane in running:
+                lane.start()
+            left = len(running)
+            while left:
+                try:
+                    found = said.get(timeout=_time_left(until))
+                except Empty:
+                    return
+                if found is None:
+                    left -= 1
+                elif isinstance(found, Exception):
+                    raise RuntimeError(f"the engine for tables: {found}") from found
+                else:
+                    yield found
+        finally:
+            for lane in running:
+                lane.end()
+
+
+def _time_left(until: float | None) -> float | None:
+    return None if until is None else max(0.0, until - time.monotonic())
 
 
 class _Lane(threading.Thread):
     """Tasks one after the other."""
 
-    def __init__(self, program: Path, tasks: Iterable[Task], said: Said) -> None:
+    def __init__(self, program: Path, tasks: Iterable[Task], said: Said, path: Path) -> None:
         super().__init__(daemon=True)
         self.program = program
         self.tasks = tasks
         self.said = said
+        self.path = path
         self.process: subprocess.Popen[str] | None = None
         self.lock = threading.Lock()
         self.is_over = False
@@ -145,36 +163,41 @@ class _Lane(threading.Thread):
     def run(self) -> None:
         """All tasks."""
         try:
-            with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-                for task in self.tasks:
-                    if self.is_over:
-                        return
-                    self._run(task, Path(folder) / "net.tables")
+            for task in self.tasks:
+                if self.is_over:
+                    return
+                self._run(task)
         except Exception as error:  # it belongs to the one who waits
-            self.said.put(error)
+            self._say(error)
         finally:
-            self.said.put(None)
+            self._say(None)
 
-    def _run(self, task: Task, path: Path) -> None:
-        path.write_text(task.text, encoding="ascii")
+    def _say(self, found: Answer | Space | Exception | None) -> None:
+        """Nothing any more when nobody waits: the queue may be that of others by then."""
+        with self.lock:
+            if not self.is_over:
+                self.said.put(found)
+
+    def _run(self, task: Task) -> None:
+        self.path.write_text(task.text, encoding="ascii")
         with self.lock:
             if self.is_over:
                 return
-            self.process = _started(self.program, path, task)
+            self.process = _started(self.program, self.path, task)
         guard = threading.Timer(task.seconds + _GRACE_S, self.process.kill)
         guard.start()
         try:
-            _read(self.process, task, self.said)
+            _read(self.process, task, self._say)
         finally:
             guard.cancel()
 
     def end(self) -> None:
-        """Stop at once."""
+        """Stop at once; a task that is being made is not waited for."""
         with self.lock:
             self.is_over = True
             if self.process is not None:
                 self.process.kill()
-        self.join()
+        self.join(_GRACE_S)
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
@@ -190,7 +213,11 @@ def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
     )
 
 
-def _read(process: subprocess.Popen[str], task: Task, said: Said) -> None:
+def _read(
+    process: subprocess.Popen[str],
+    task: Task,
+    say: Callable[[Answer | Space], None],
+) -> None:
     with process:
         assert process.stdout is not None and process.stderr is not None
         for line in process.stdout:
@@ -201,7 +228,7 @@ def _read(process: subprocess.Popen[str], task: Task, said: Said) -> None:
                 method = f"{task.technique} {found.method}".strip()
                 found = replace(found, value=value, method=method)
             if found is not None:
-                said.put(found)
+                say(found)
         errors = process.stderr.read()
     if process.returncode == _WRONG:
         raise RuntimeError(errors.strip())

@@ -52,6 +52,8 @@ _WEIGHT = 4.0
 """So much more time have questions that are asked for themselves than those that only help."""
 _LEAST_SLICE_S = 0.25
 """With less for each of the questions they are asked together."""
+_GRACE_S = 0.5
+"""So much later than its time a process may say what it knows."""
 
 
 @frozen
@@ -178,6 +180,7 @@ class _Portfolio:
             for which, (part, hint) in enumerate([*parts, *line.asked.hints]):
                 self.places.append(_Place(line, part, which, hint))
         self.diagrams: dict[int, Diagrams] = {}
+        self.fitting: dict[int, tuple[Tables, bool]] = {}
         self.structural: Structural | None = None
         self.given = 0
         """Places that a round has had; those after them have come since."""
@@ -267,7 +270,8 @@ class _Portfolio:
                 break
             self.given = len(self.places)
             length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
-            for answer in ask(self.program, self._lanes(open_, number, length), self.said):
+            lanes = self._lanes(open_, number, length)
+            for answer in ask(self.program, lanes, self.said, until=self.ends + _GRACE_S):
                 assert isinstance(answer, Answer)
                 yield from self._noted(answer)
                 if all(line.is_done for line in self.lines):
@@ -406,12 +410,15 @@ class _Portfolio:
                 if still and left >= _LEAST_SLICE_S / 5:
                     # A diagram of the net as it is is one for all formulas.
                     is_whole = number == 0 or (
-                        method == METHOD and number % 2 == 1 and kinds == {"ctl"}
+                        method == METHOD and number % 2 == 1 and kinds <= {"ctl", "ltl"}
                     )
                     task = self._task(method, still, which, is_first=is_whole)
+                    until_end = self.ends - time.monotonic()
+                    if until_end < _LEAST_SLICE_S / 5:
+                        return
                     yield replace(
                         task,
-                        seconds=min(left, max(0.0, self.ends - time.monotonic())),
+                        seconds=min(left, until_end),
                         mebibytes=self.mebibytes // lanes,
                         seed=2 * number + which + 1,
                     )
@@ -442,7 +449,7 @@ class _Portfolio:
                 smaller[n] = (asked.kind, asked.smaller)
         nets = {id(s.tables): s.tables for _, s in smaller.values()}
         asked_of = {n: f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()}
-        is_told = all(t.fits() for t in nets.values()) and not any(
+        is_told = all(map(self._fits, nets.values())) and not any(
             map(_too_large, asked_of.values())
         )
         if len(smaller) < len(numbers) or len(nets) != 1 or not is_told:
@@ -455,6 +462,12 @@ class _Portfolio:
             texts = list(asked_of.values())
         order = self._order(tables, which) if method == METHOD else ()
         return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=technique)
+
+    def _fits(self, tables: Tables) -> bool:
+        """Whether the engine can read a net; the answer is kept with the net, so that no other one gets its id."""
+        if id(tables) not in self.fitting:
+            self.fitting[id(tables)] = tables, tables.fits()
+        return self.fitting[id(tables)][1]
 
     def _order(self, tables: Tables, which: int) -> Sequence[int]:
         """One of the orders of the places of a net, which is this one or a reduced one."""
@@ -485,7 +498,7 @@ def space(
         lanes.append([Task("count", tables.text([]), seconds, mebibytes // 3)])
     if only in ("", METHOD):
         lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(program, [_until(ends, lane) for lane in lanes]):
+    for found in ask(program, [_until(ends, lane) for lane in lanes], until=ends + _GRACE_S):
         if isinstance(found, Space):
             return found
     return None

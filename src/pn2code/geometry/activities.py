@@ -19,7 +19,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.shown import Shown
-from pn2code.robot.belts import told_to_run, until_stop
+from pn2code.robot.belts import line_of, told_to_run, until_stop
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
@@ -91,6 +91,7 @@ class Activity:
         may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
             is taken away, they do.
         handled: where parts are handled in it (a place in the world, m), and how far around that (m).
+        halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
 
     number: int
@@ -105,11 +106,12 @@ class Activity:
     turns: frozenset[str] = frozenset()
     may_run: frozenset[str] = frozenset()
     handled: tuple[tuple[Array, float], ...] = ()
+    halfway: tuple[Contents, ...] = ()
 
     @property
     def between(self) -> tuple[Contents, ...]:
         """The parts at each moment."""
-        return (*(contents for _, contents in self.legs), self.after)
+        return (*(contents for _, contents in self.legs), *self.halfway, self.after)
 
 
 class Doing:
@@ -192,6 +194,7 @@ class Doing:
         turns: frozenset[str] = frozenset()
         may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
+        halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
         others = tuple(s for s in others if s.robot != owner)
         for command in commands:
@@ -202,12 +205,13 @@ class Doing:
                     may_run |= told
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
-                    command = until_stop(own, _parts(contents, standing, 0.0), command)
+                    command = until_stop(own, parts_of(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(own, leg.path)
                     turns |= plates
-                    done = self._turning(done, command, plates, standing, contents)
+                    line = turned_by(own, leg.path, own.belts)
+                    done = self._turning(done, command, (plates, line), standing, contents)
                     if pulled := self._pulled(own, leg, plates, contents):
                         done = replace(done, fault=pulled, is_part=True, command=command, doubt="")
                     if done.fault:
@@ -230,6 +234,8 @@ class Doing:
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
                     handled += self._handed_on(ran, (*others, stand), contents)
+            else:
+                halfway.append(contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -251,6 +257,7 @@ class Doing:
             turns=turns,
             may_run=may_run,
             handled=tuple(handled),
+            halfway=tuple(halfway),
         )
 
     def _run_out(
@@ -263,10 +270,10 @@ class Doing:
 
         def run_out(parts: Parts) -> None:
             parts.stand(device.name, stopped)
+            parts.run_out(ran)
             for axis in device.belts:
                 plate = f"{device.name}/{axis.name}"
                 if plate in ran:
-                    parts.run_out(plate)
                     parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
 
         found, faults = _tried(contents, standing, run_out)
@@ -276,7 +283,7 @@ class Doing:
         self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
     ) -> list[tuple[Array, float]]:
         """Where belts have taken parts onto other belts or turntables, as if they had been put there."""
-        parts = _parts(contents, standing, 0.0)
+        parts = parts_of(contents, standing, 0.0)
         ground = Ground.of(self._cell)
         out = []
         for part in parts.present.values():
@@ -296,7 +303,10 @@ class Doing:
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
         axis = own.axis
-        riders = [p for inside in contents for p in inside.parts.riders(plate)]
+        own_plates = line_of(own.robot, axis)
+        riders = [
+            p for inside in contents for p in inside.parts.present.values() if p.plate in own_plates
+        ]
         point, around = where
         off = inverse(own.T_world_axis) @ np.append(point, 1.0)
         if axis.belt is not None:
@@ -331,14 +341,16 @@ class Doing:
         self,
         done: Activity,
         command: Command,
-        plates: frozenset[str],
+        turned: tuple[frozenset[str], frozenset[str]],
         standing: tuple[Stand, ...],
         contents: Contents,
     ) -> Activity:
-        """Whether what stands on turntables stays there when they begin to turn."""
+        """Whether what stands on turntables stays there when they begin to turn: on these, of which some are belts."""
+        plates, belts = turned
         for plate in sorted(plates):
+            line = belts if plate in belts else frozenset()
             try:
-                _, faults = _tried(contents, standing, partial(Parts.turn, plate=plate))
+                _, faults = _tried(contents, standing, partial(Parts.turn, plate=plate, line=line))
             except PartFault as fault:
                 return replace(done, fault=str(fault), is_part=True, command=command, doubt="")
             if faults and not done.doubt:
@@ -410,7 +422,7 @@ def _tried(
     found: list[tuple[_Done, Parts]] = []
     faults: list[PartFault] = []
     for slack in _SLACKS:
-        parts = _parts(contents, standing, slack)
+        parts = parts_of(contents, standing, slack)
         try:
             found.append((does(parts), parts))
         except PartFault as fault:
@@ -420,7 +432,7 @@ def _tried(
     return found, faults
 
 
-def _parts(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
+def parts_of(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
     """The parts, to be handled otherwise, with turntables where they are."""
     parts = contents.parts.copy(slack)
     for stand in standing:

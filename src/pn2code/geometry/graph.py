@@ -30,11 +30,12 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import Binding
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
+from pn2code.verify.controller.control_types import CellProgram
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.nondeterminism import undetermined
-from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.programs import Generated, Sizes
 
 MOST_STATES = 300_000
 """States of a cell that are looked at."""
@@ -135,14 +136,18 @@ class CellGraph:
 
 def explore_cell(
     partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
-    initial: str | None = None,
+    initial: str | None = None, program: CellProgram | None = None,
 ) -> CellGraph | None:  # fmt: skip
     """Explores the cell as it runs; None after an error that was reported.
+
+    `program` is what somebody has compiled of the same cell.
 
     Raises:
         NotModelledError: it cannot be said what its programs do.
     """
-    running = Running.of(partition)
+    if program is None:
+        program = CellProgram(Running.of(partition), (), Generated())
+    running, made = program.running, program.generated
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
     limits = replace(
         limits,
@@ -156,7 +161,9 @@ def explore_cell(
         file = Path(folder) / "graph.jsonl"
         options = ExploreOptions(
             initial=initial,
-            sizes=Sizes.start(running.net, storage),
+            sizes=made.sizes or Sizes.start(running.net, storage),
+            generated=made,
+            predicates=program.predicates,
             graph=file,
             questions="".join(f"{line}\n" for line in running.lines(first=True)),
             evidence=Path(folder),

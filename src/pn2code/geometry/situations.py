@@ -7,7 +7,8 @@
     found.way(situation)            # the elements that lead there
 
 Where an arm stands is where its last transition has left it; so a situation is a state of the cell, a place for each
-arm, and the parts. Of what is under way in one nobody knows how far it is.
+arm, and the parts. Of what is under way in one nobody knows how far it is. What a sensor that sees the scene cannot say
+then (`seeing`) does not occur.
 """
 
 from __future__ import annotations
@@ -15,32 +16,42 @@ from __future__ import annotations
 import itertools
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.activities import Activity, Contents, Doing, spot
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Stand
+from pn2code.geometry.seeing import Scene, Seeing
 from pn2code.robot.parts import Part
 
 Side = tuple[int, int, int]
 """What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands)."""
+Said = frozenset[tuple[int, str, bool]]
+"""Whom, by the number of the owner, which sensor has told what."""
 MOST = 1_000_000
 """Situations that are looked at."""
 
 
 @frozen(eq=False)
 class Situation:
-    """A state of the cell with its arms and parts."""
+    """A state of the cell with its arms and parts.
+
+    Args:
+        said: what sensors that see the scene may have said to whoever has asked before its commands: it is under way
+            since then.
+    """
 
     state: int
     stands: tuple[Stand, ...]
     contents: Contents
+    said: Said = frozenset()
 
     @property
-    def key(self) -> tuple[int, ...]:
+    def key(self) -> tuple[object, ...]:
         """What tells it from others."""
-        return (self.state, self.contents.number, *(s.number for s in self.stands))
+        return (self.state, self.contents.number, *(s.number for s in self.stands), self.said)
 
 
 @frozen
@@ -63,7 +74,7 @@ class Situations:
         self.graph, self.doing = graph, doing
         self.robots = tuple(robots)
         self.situations: list[Situation] = []
-        self._numbers: dict[tuple[int, ...], int] = {}
+        self._numbers: dict[tuple[object, ...], int] = {}
         self._from: list[tuple[int, int]] = []
         self.activities: dict[tuple[int, int], Met] = {}
         """by (activity, element or -1)"""
@@ -84,11 +95,12 @@ class Situations:
         self._acting = {
             o.index for o in graph.partition.owners if o.kind is not OwnerKind.SUPERVISOR
         }
+        self._seeing = Seeing(graph, doing)
 
     def explore(self) -> None:
         """Goes through all of them."""
         stands = tuple(self.doing.planner.home(r) for r in self.robots)
-        self._number(Situation(0, stands, self.doing.start), -1, -1)
+        self._number(self._begun(Situation(0, stands, self.doing.start)), -1, -1)
         todo = deque([0])
         while todo:
             number = todo.popleft()
@@ -106,6 +118,11 @@ class Situations:
                 found = self._number(after, number, element)
                 if found == before:
                     todo.append(found)
+
+    @property
+    def sees(self) -> bool:
+        """Whether what is done depends on what sensors see there."""
+        return bool(self._seeing)
 
     @property
     def stopped(self) -> bool:
@@ -149,7 +166,7 @@ class Situations:
             if e.is_step or e.owner not in self._acting:
                 continue
             commands = self.graph.commands(element)
-            if not commands:
+            if not commands or not self._was_told(here, element):
                 continue
             if self.graph.outside.get(e.transition):
                 self.why = self.why or "outside"
@@ -167,16 +184,87 @@ class Situations:
         self, here: Situation, element: int, target: int, under_way: dict[int, Activity]
     ) -> Situation | None:
         activity = under_way.get(element)
+        if not self._is_told(here, element, under_way):
+            return None
         self._expect_kept(here, element, target, under_way)
         if activity is None:
-            return Situation(target, here.stands, here.contents)
+            return self._begun(Situation(target, here.stands, here.contents, here.said), element)
         if activity.fault:
             return None
+        stands, contents = self._done(here, element, activity)
+        return self._begun(Situation(target, stands, contents, here.said), element)
+
+    def _done(
+        self, here: Situation, element: int, activity: Activity | None
+    ) -> tuple[tuple[Stand, ...], Contents]:
+        """Where arms and parts are when somebody has ended what it does."""
+        if activity is None:
+            return here.stands, here.contents
         stands = here.stands
         arm = self._arm_of.get(self.graph.elements[element].owner)
         if arm is not None and activity.end is not None:
             stands = (*stands[:arm], activity.end, *stands[arm + 1 :])
-        return Situation(target, stands, activity.after)
+        return stands, activity.after
+
+    # --- sensors that see the scene --------------------------------------------------------------
+
+    def _scene(
+        self,
+        here: Situation,
+        element: int,
+        activity: Activity | None,
+        under_way: dict[int, Activity],
+    ) -> Scene:
+        """What is there when an element asks; `activity`: what it has done by then."""
+        owner = self.graph.elements[element].owner
+        others = {
+            a.number: a for e, a in under_way.items() if self.graph.elements[e].owner != owner
+        }
+        handles = activity is not None and bool(activity.kinds or activity.turns)
+        stands, contents = self._done(here, element, activity)
+        return Scene(stands, contents, handles, tuple(others[n] for n in sorted(others)))
+
+    def _was_told(self, here: Situation, element: int) -> bool:
+        """Whether sensors that were asked before the commands may have said what the element has."""
+        owner = self.graph.elements[element].owner
+        asked = self._seeing.asked(element) if self._seeing else ()
+        return all((owner, x.sensor, x.value) in here.said for x in asked if x.first)
+
+    def _is_told(self, here: Situation, element: int, under_way: dict[int, Activity]) -> bool:
+        """Whether sensors may have said what the element has, which is about to occur."""
+        if not self._seeing:
+            return True
+        asked = [x for x in self._seeing.asked(element) if not x.first]
+        if asked:
+            scene = self._scene(here, element, under_way.get(element), under_way)
+            if any(x.value not in self._seeing.says(x.sensor, scene) for x in asked):
+                return False
+        return self._was_told(here, element)
+
+    def _begun(self, here: Situation, element: int = -1) -> Situation:
+        """With what sensors may say to those who ask before their commands, until they have done these.
+
+        Who begins first sees nothing of what others begin, so what can be said grows from there.
+        """
+        if not self._seeing:
+            return here
+        owner = self.graph.elements[element].owner if element >= 0 else None
+        asking = [
+            (self.graph.elements[e].owner, x.sensor, e)
+            for e, _ in self.graph.arcs[here.state]
+            for x in self._seeing.asked(e)
+            if x.first
+        ]
+        asked = {(o, sensor) for o, sensor, _ in asking}
+        said = frozenset(x for x in here.said if x[0] != owner and x[:2] in asked)
+        while True:
+            here = replace(here, said=said)
+            under_way = self._under_way(here) if asking else {}
+            for o, sensor, e in asking:
+                scene = self._scene(here, e, None, under_way)
+                said |= {(o, sensor, value) for value in self._seeing.says(sensor, scene)}
+            if said == here.said:
+                return here
 
     def _expect_kept(
         self, here: Situation, element: int, target: int, under_way: dict[int, Activity]

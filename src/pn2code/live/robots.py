@@ -15,7 +15,7 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
 Json = dict[str, Any]
-_KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
+_KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
 
 
 class Robots:

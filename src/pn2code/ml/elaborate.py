@@ -497,6 +497,7 @@ class Elaborator:
                 if isinstance(e, Binding) and e.symbol is not None
             },
             int_bits=self._ctx.int_bits,
+            used=tuple(self._files.found),
         )
 
     def datatypes(self) -> dict[str, core.DatatypeDec]:

@@ -12,10 +12,12 @@ class Folder:
 
     Args:
         files: the allowed folder; without one everything is dropped.
+        below: where they are put below its folder `output`; "": there.
     """
 
-    def __init__(self, files: Files) -> None:
+    def __init__(self, files: Files, below: str = "") -> None:
         self._files = files
+        self._below = f"output/{below}/" if below else "output/"
         self._open: dict[str, OutStream] = {}
 
     def append(self, name: str, text: str) -> None:
@@ -25,6 +27,7 @@ class Folder:
             FileProblem: it cannot be written.
             OSError: the same, while it was written.
         """
+        name = self._below + name.removeprefix("output/")
         if name not in self._open:
             parts = name.split("/")[:-1]
             for i in range(len(parts)):

@@ -51,7 +51,6 @@ class Finder:
     """The places, or the transitions, of a net by what users call them."""
 
     def __init__(self, elements: Iterable[_Element], paths: Sequence[tuple[str, str]]) -> None:
-        self.paths = {path: index for index, (path, _) in enumerate(paths)}
         self._own = paths
         self._all: list[Instance] = []
         self._by_name: dict[str, list[Instance]] = {}
@@ -63,6 +62,8 @@ class Finder:
                     self._by_name.setdefault(text, []).append(e.instance)
                 if e.instance.full not in self.bare.setdefault(name, []):
                     self.bare[name].append(e.instance.full)
+        self.paths = _unique(self._all) | {path: index for index, (path, _) in enumerate(paths)}
+        """Those of traces, and those of the ports and the members of fusion sets where only one place has it."""
 
     @staticmethod
     def of_places(net: FlatNet) -> Finder:
@@ -136,6 +137,13 @@ class Finder:
             return [self.paths[text]]
         own = [i for i, (path, short) in enumerate(self._own) if text == short or _ends(path, text)]
         return own or sorted({x.index for x in self._all if _ends(x.path, text)})
+
+
+def _unique(instances: Iterable[Instance]) -> dict[str, int]:
+    found: dict[str, set[int]] = {}
+    for x in instances:
+        found.setdefault(x.path, set()).add(x.index)
+    return {path: min(meant) for path, meant in found.items() if len(meant) == 1}
 
 
 def _ends(path: str, text: str) -> bool:

@@ -1,7 +1,7 @@
 """What a page is told of a session: all of it once, then what has changed.
 
 view = View(session)
-view.state()                  # {"position": 3, "places": {"7": [2, "1`1++\\n1`5"]}, "enabled": {"more": [4], ...}, ...}
+view.state()  # {"position": 3, "places": {"7": [2, "1`1++\\n1`5"]}, "enabled": {"more": [4], "less": []}, ...}
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from pn2code.robot.parts import PartChange, Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
+from pn2code.robot.zones_table import Zone
 
 Json = dict[str, Any]
 
@@ -36,9 +37,16 @@ def describe(cell: RobotCell) -> Json:
         "kinds": {
             name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()
         },
+        "zones": [_zone(z) for z in cell.zones.values()],
         "warningClearance": cell.scene.warning_clearance,
     }
     return {**found, "meshes": store.rows, "notes": store.simplified}
+
+
+def _zone(zone: Zone) -> Json:
+    """A box in the room; `maxSpeed` is m/s, or None."""
+    placed = frame(matrix_of(zone.pose))
+    return {"name": zone.name, "frame": placed, "size": list(zone.size), "maxSpeed": zone.max_speed}
 
 
 def frame(matrix: Array) -> list[float]:

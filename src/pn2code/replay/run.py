@@ -61,6 +61,9 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
             "gaps": _gaps(record),
             "marks": _marks(record, robot_cell, motion, dict(config.report.count)),
         }
+        for zone in described["cell"]["zones"]:
+            if record.too_fast is not None and record.too_fast.zone == zone["name"]:
+                zone["broken"] = record.too_fast.described()
         described["motion"] = motion.described()
     return described
 

@@ -24,6 +24,7 @@ COLOURS = {
     "joint": "#0072B2",
     "home": "#56B4E9",
     "linear": "#009E73",
+    "external": "#E69F00",
     "tool": "#D55E00",
     "measure": "#CC79A7",
     "wait": "#BBBBBB",

@@ -22,7 +22,7 @@ MOST_PARTS = 12
 MOST_BY_HAND = 12
 MOST_NUMBERS = 12
 """in one line"""
-KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
+KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
 
 
 def summarise(
@@ -87,6 +87,11 @@ def summarise(
         "accuracy": record.accuracy,
         "pictures": record.pictures,
         **({"parts": _parts(record)} if record.parts else {}),
+        **(
+            {"zones": {record.too_fast.zone: record.too_fast.described()}}
+            if record.too_fast
+            else {}
+        ),
         **(
             {
                 "by_hand": [

@@ -112,6 +112,9 @@ class Backend(Protocol):
         The arms are left out. None: this backend does not measure distances.
         """
 
+    def light_zone(self, name: str) -> None:
+        """Something was too fast in a zone: pictures show it so from now on."""
+
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255; None: this backend has no eyes."""
 

@@ -33,7 +33,7 @@ from pn2code.robot.backend import (
     Picture,
 )
 from pn2code.robot.commands import Pose
-from pn2code.robot.geometry import Body, Solid, bodies, body_of
+from pn2code.robot.geometry import Body, Solid, bodies, body_of, zone_body
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
@@ -163,6 +163,8 @@ class BulletBackend:
                 )
             self._robots = {r.name: self._load_robot(r, looks) for r in cell.moving}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
+            shown = cell.zones.values() if looks else ()
+            self._zones = {z.name: self._load_body(zone_body(z), True).id for z in shown}
         self._looks = looks
         self._parts: dict[str, _Placed] = {}
         self._guess: dict[tuple[str, ...], float] = {}
@@ -698,6 +700,14 @@ class BulletBackend:
         self._p.resetBasePositionAndOrientation(
             self._ball, point, (0.0, 0.0, 0.0, 1.0), physicsClientId=self._client
         )
+
+    def light_zone(self, name: str) -> None:
+        """Its edges are thick from now on, and of another colour."""
+        if name in self._zones:
+            with _silent():
+                self._p.removeBody(self._zones[name], physicsClientId=self._client)
+                broken = zone_body(self._cell.zones[name], is_broken=True)
+                self._zones[name] = self._load_body(broken, True).id
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255."""

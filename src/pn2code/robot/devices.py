@@ -2,7 +2,7 @@
 
 Each is a robot without joints, of which all axes are external ones.
 
-devices = read_devices(t, folder, places)       # of [devices]; those without `axes` are left out
+devices = read_devices(t, Around(folder, places, 0.2))    # of [devices]; those without `axes` are left out
 
 So everything that knows of robots knows of them: planner, backends, sweeps, pictures.
 """
@@ -11,23 +11,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.devices import DEVICE_AXIS
+from pn2code.cell_file.devices import DEVICE_AXIS, DEVICE_PLACE
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
+from pn2code.robot.belt_lines import expect_lines
 from pn2code.robot.carried import STAND, add_joint, add_limit, add_shape, axis_words
 from pn2code.robot.commands import Pose
 from pn2code.robot.device_kinematics import DeviceKinematics
 from pn2code.robot.external import Belt, Clamp, ExternalAxis, Externals
 from pn2code.robot.model import Arm
 from pn2code.robot.robot_cell import CellRobot
-from pn2code.robot.scene_objects import SceneObject, read_colour, read_object
+from pn2code.robot.scene_objects import SceneObject, read_colour
+from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_pose
 from pn2code.robot.transforms import Array, inverse, matrix_of, pose_of
@@ -47,19 +49,42 @@ class _Read:
     clamp: Clamp | None = None
 
 
-def read_devices(t: Table, folder: Path, places: Mapping[str, Pose]) -> tuple[CellRobot, ...]:
+@frozen(eq=False)
+class Around:
+    """What axes are read with.
+
+    Args:
+        folder: of meshes; places: by name.
+        far: m: from the frame of a part to its furthest point, of the largest kind; 0: there are no parts.
+        T_world_base: where the device stands.
+    """
+
+    folder: Path
+    places: Mapping[str, Pose]
+    far: float
+    T_world_base: Array = field(default_factory=lambda: np.eye(4))
+
+    def seen_from(self, frame: Array, place: str) -> tuple[float, float, float]:
+        """Where a place is in a frame of the device, m."""
+        spot = inverse(self.T_world_base @ frame) @ matrix_of(self.places[place])
+        x, y, z = spot[:3, 3].tolist()
+        return x, y, z
+
+
+def read_devices(t: Table, around: Around) -> tuple[CellRobot, ...]:
     """The devices of which something moves; what is wrong is reported."""
     out = []
     for name, data in t.data.items():
         if not isinstance(data, Mapping) or "axes" not in data:
             continue  # what is no table is reported where its page is read
-        axes = _axes(t.inside(name, "axes"), name, folder, places)
+        base = read_pose(t.only(name, DEVICE_PLACE), "base")
+        axes = _axes(t.inside(name, "axes"), name, replace(around, T_world_base=matrix_of(base)))
         if axes:
-            out.append(device_of(name, axes))
+            out.append(device_of(name, axes, base))
     return tuple(out)
 
 
-def device_of(name: str, axes: Externals) -> CellRobot:
+def device_of(name: str, axes: Externals, base: Pose = NO_POSE) -> CellRobot:
     """A device with these axes."""
     tree = urdf.tree_of(Path(name), _tree(name, axes))
     arm = Arm(
@@ -73,14 +98,14 @@ def device_of(name: str, axes: Externals) -> CellRobot:
         tuple(a.name for a in axes.tables),
     )
     home = tuple(a.home for a in axes.tables)
-    return CellRobot(name, arm, None, DeviceKinematics(arm, axes), NO_POSE, home, None, axes)
+    return CellRobot(name, arm, None, DeviceKinematics(arm, axes), base, home, None, axes)
 
 
-def _axes(t: Table, device: str, folder: Path, places: Mapping[str, Pose]) -> Externals:
+def _axes(t: Table, device: str, around: Around) -> Externals:
     found = [
         read
         for name, table in t.named(DEVICE_AXIS)
-        if (read := _axis(table, name, folder, places)) is not None
+        if (read := _axis(table, name, around)) is not None
     ]
     tables = tuple(a for read in found for a in read.moved)
     names = [a.name for a in tables]
@@ -94,16 +119,17 @@ def _axes(t: Table, device: str, folder: Path, places: Mapping[str, Pose]) -> Ex
                 "`_1` and `_2`",
             )
             return Externals()
+    tables = expect_lines(t, tables)
     return Externals((), tables, tuple(read.clamp for read in found if read.clamp is not None))
 
 
-def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Read | None:
+def _axis(t: Table, name: str, around: Around) -> _Read | None:
     before = len(t.d.errors)
     kind = t.text("kind")
     if kind != t.data.get("kind", kind):
         return None  # what else there may be is not known
     if kind == "belt":
-        return _belt(t, name, places)
+        return _belt(t, name, around)
     slides = kind != "swing"
     numbers = {k: t.number(k) for k in ("from", "to", "home", *_PACE)}
     for key in ("from", "to"):
@@ -114,10 +140,10 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     holds = ""
     if kind == "clamp":
         objects = (_jaw(t),)
-        holds = _place(t, "holds", places)
+        holds = _place(t, "holds", around.places)
     else:
         t.has("objects")
-        objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+        objects = read_solids(t.tables("objects"), around.folder)
     if kind == "slide":
         direction = np.array(t.numbers("direction"))
         if not np.linalg.norm(direction) > 1e-9:
@@ -128,7 +154,9 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     if len(t.d.errors) == before:
         _expect_order(t, name, kind, numbers)
         if holds and len(t.d.errors) == before:
-            _expect_between(t, name, frame, numbers["to"], (holds, places[holds]))
+            _expect_between(
+                t, name, numbers["to"], holds, (around.seen_from(frame, holds), around.far)
+            )
     if len(t.d.errors) != before:
         return None
     factor = 1.0 if slides else math.radians(1.0)
@@ -150,7 +178,7 @@ def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
     return name
 
 
-def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
+def _belt(t: Table, name: str, around: Around) -> _Read | None:
     before = len(t.d.errors)
     length, width, height = (t.number(k) for k in ("length", "width", "height"))
     for key in ("length", "width"):
@@ -158,18 +186,19 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
     speed, acceleration, jerk = (t.number(k) for k in _PACE)
     pose = read_pose(t, "pose")
     frame = matrix_of(pose)
-    stop = _place(t, "stop", places)
+    stop = _place(t, "stop", around.places)
+    drives = t.texts("drives")
     colour = read_colour(t)
     t.done()
-    if abs(float(frame[2, 2]) - 1.0) > 1e-9:
+    if abs(float((around.T_world_base @ frame)[2, 2]) - 1.0) > 1e-9:
         t.d.error(
             codes.ROBOT_VALUE,
             f"belt `{name}` is not level, so that what stands on it would slide",
             t.at("pose"),
-            hint="leave `roll` and `pitch` of its pose out",
+            hint="leave `roll` and `pitch` of its `pose`, and of the `base` of its device, out",
         )
     if len(t.d.errors) == before and stop:
-        along = _along(frame, places[stop])
+        along, beside, above = around.seen_from(frame, stop)
         if not -_SAME <= along <= length + _SAME:
             t.d.error(
                 codes.ROBOT_VALUE,
@@ -177,6 +206,19 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
                 "no part on it comes there",
                 t.at("stop"),
                 hint=f"it runs from its `pose` along the x of that; correct this or `[places.{stop}]`",
+            )
+        elif abs(beside) > width / 2.0 + _SAME or above < -_SAME:
+            is_beside = above >= -_SAME
+            where = (
+                f"{abs(beside):g} m beside its middle"
+                if is_beside
+                else f"{-above:g} m below its top"
+            )
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"the stop of belt `{name}`, `{stop}`, is {where}: no part on it comes there",
+                t.at("stop"),
+                hint=f"it is {width:g} m wide, and parts are on top of it; correct its `pose` or `[places.{stop}]`",
             )
     if len(t.d.errors) != before:
         return None
@@ -186,31 +228,37 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
         (
             ExternalAxis(
                 name, True, frame, np.array([1.0, 0.0, 0.0]), 0.0, length, speed, acceleration,
-                jerk, 0.0, height=height, objects=(body,), belt=Belt(width, stop),
+                jerk, 0.0, height=height, objects=(body,), belt=Belt(width, stop, drives, length),
             ),
         )
     )  # fmt: skip
 
 
-def _along(frame: Array, place: Pose) -> float:
-    """Where a place is along the x of a frame, m."""
-    return float((inverse(frame) @ matrix_of(place))[0, 3])
-
-
 def _expect_between(
-    t: Table, name: str, frame: Array, widest: float, place: tuple[str, Pose]
+    t: Table, name: str, widest: float, called: str, at: tuple[tuple[float, float, float], float]
 ) -> None:
-    """What a clamp holds must be between its jaws."""
-    called, pose = place
-    along = _along(frame, pose)
-    if abs(along) > widest / 2.0 + _SAME:
+    """What a clamp holds must be between its jaws; `at`: where it is seen from the clamp, and how far parts reach."""
+    spot, far = at
+    along = abs(spot[0])
+    if along > widest / 2.0 + _SAME:
         t.d.error(
             codes.ROBOT_VALUE,
-            f"clamp `{name}` opens to {widest:g} m, but what it holds, at `{called}`, is {abs(along):g} m beside the "
+            f"clamp `{name}` opens to {widest:g} m, but what it holds, at `{called}`, is {along:g} m beside the "
             "middle between its jaws",
             t.at("holds"),
             hint=f"the jaws close along the x of its `pose`; correct it or `[places.{called}]`",
         )
+        return
+    for axis, off, size in zip("yz", spot[1:], t.numbers("jaw")[1:], strict=True):
+        if far and abs(off) > size / 2.0 + far + _SAME:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"the jaws of clamp `{name}` reach {size / 2.0:g} m along the {axis} of its `pose`, but what it holds, "
+                f"at `{called}`, is {abs(off):g} m away: they touch no part there",
+                t.at("holds"),
+                hint=f"correct its `pose` or `[places.{called}]`",
+            )
+            return
 
 
 def _expect_order(t: Table, name: str, kind: str, numbers: Mapping[str, float]) -> None:

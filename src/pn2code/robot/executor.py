@@ -386,11 +386,11 @@ class RobotExecutor:
                 raise MotionFault("bad-command", f"`{a.axis}` cannot go to {a.position}")
             moved = [(self.robot.index(k), v) for k, v in self.robot.axes.moved(a.axis, a.position)]
             arm, i = self.robot.arm, moved[0][0]
-            if not axis.lower - 1e-9 <= a.position <= axis.upper + 1e-9:
+            if not axis.lower - 1e-9 <= a.position <= axis.highest + 1e-9:
                 called = f"`{a.axis}`" if self.robot.is_device else arm.called(i)
                 raise MotionFault(
                     "joint-limit",
-                    f"{called} would be at {arm.beyond(i, a.position, axis.lower, axis.upper)}",
+                    f"{called} would be at {arm.beyond(i, a.position, axis.lower, axis.highest)}",
                 )
             for index, position in moved:
                 q[index] = position if axis.belt is None else q[index] + position

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike
 from pn2code.base.frozen import frozen
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
-from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table_poses import read_pose
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_about
 
@@ -30,10 +31,17 @@ if TYPE_CHECKING:
 
 @frozen
 class Belt:
-    """What a belt has beside its length."""
+    """What a belt has beside its length.
+
+    Args:
+        drives: belts of the same device that go on where it ends, and run with it.
+        farthest: m: so far it may be told to run: its length, with that of those.
+    """
 
     width: float
     stop: str = ""
+    drives: tuple[str, ...] = ()
+    farthest: float = 0.0
 
 
 @frozen(eq=False)
@@ -68,6 +76,11 @@ class ExternalAxis:
     def unit(self) -> str:
         """Of its positions in cell.toml."""
         return "m" if self.is_track else "degrees"
+
+    @property
+    def highest(self) -> float:
+        """The greatest position that a command may name."""
+        return self.upper if self.belt is None else self.belt.farthest
 
     def at(self, position: ArrayLike) -> Array:
         """Its frame after its own motion, in that of the robot's `base`; of positions (n,) all of them, (n, 4, 4)."""
@@ -149,7 +162,9 @@ class Externals:
         """The axes that one of that name moves, each with where it is then."""
         clamp = next((c for c in self.clamps if c.axis.name == name), None)
         if clamp is None:
-            yield name, position
+            own = self.axis(name)
+            driven = own.belt.drives if own is not None and own.belt is not None else ()
+            yield from ((belt, position) for belt in (name, *driven))
         else:
             yield from ((jaw, position / 2.0) for jaw in clamp.jaws)
 
@@ -203,7 +218,7 @@ def _axis(
     else:
         place = T_base_world @ matrix_of(read_pose(t, "pose"))
         radius, height = t.number("radius"), t.number("height")
-        objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+        objects = read_solids(t.tables("objects"), folder)
     t.done()
     unit = "m" if is_track else "degrees"
     if len(t.d.errors) == before:

@@ -44,6 +44,9 @@ class FakeBackend:
         """None: distances are not known here."""
         return None
 
+    def light_zone(self, name: str) -> None:
+        """Nothing is shown."""
+
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """None: no pictures."""
         return None

@@ -24,7 +24,9 @@ from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, s
 from pn2code.robot.pedestal import WIDEST, half_width
 from pn2code.robot.robot_cell import CellRobot, PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.table_poses import NO_POSE
 from pn2code.robot.transforms import Array, matrix_of, pose_of
+from pn2code.robot.zones_table import Zone
 
 _RAIL = (0.32, 0.34, 0.37, 1.0)
 
@@ -61,6 +63,13 @@ class Body:
         return self.draw()
 
 
+def _in_world(device: CellRobot, thing: SceneObject) -> SceneObject:
+    """A thing of a device that stands."""
+    if device.base == NO_POSE:
+        return thing
+    return replace(thing, pose=pose_of(device.T_world_base @ matrix_of(thing.pose)))
+
+
 def bodies(cell: RobotCell) -> tuple[Body, ...]:
     """Everything of the scene but the robots."""
     out: list[Body] = []
@@ -75,11 +84,18 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
     for device in cell.devices:
         for axis in device.belts:
             name = f"{device.name}/{axis.name}"
-            out += [body_of(replace(o, name=name)) for o in axis.objects]
+            out += [body_of(replace(_in_world(device, o), name=name)) for o in axis.objects]
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
     out += [body_of(o) for o in scene.objects]
     return tuple(out)
+
+
+def zone_body(zone: Zone, is_broken: bool = False) -> Body:
+    """The edges of a zone, to be seen and nothing else: no distances are measured to them."""
+    # PyBullet keeps what it has read from a file of the same name.
+    name = f"zone/{zone.name}/broken" if is_broken else f"zone/{zone.name}"
+    return Body(name, (), partial(looks.zone, zone, is_broken))
 
 
 def _box(pose: Array, size: Sequence[float]) -> Solid:

@@ -27,6 +27,7 @@ from pn2code.robot.panel import (
 from pn2code.robot.robot_cell import PanelConfig
 from pn2code.robot.scene_objects import Colour, SceneObject
 from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.zones_table import Zone
 
 _PRIMER = (0.62, 0.68, 0.52, 1.0)  # the green of zinc chromate primer
 _SKIN = (0.78, 0.80, 0.82, 1.0)
@@ -35,6 +36,12 @@ _STEEL = (0.32, 0.35, 0.40, 1.0)
 _FLOOR = (0.70, 0.71, 0.72, 1.0)
 _PEDESTAL = (0.24, 0.26, 0.30, 1.0)
 _STRIPE = (0.92, 0.72, 0.08, 1.0)
+
+_PEOPLE = (0.90, 0.62, 0.0, 1.0)
+_SEEN = (0.0, 0.45, 0.70, 1.0)
+_BROKEN = (0.84, 0.37, 0.0, 1.0)
+_EDGE, _EDGE_BROKEN = 0.012, 0.035
+"""m: how thick the edges of zones are drawn."""
 
 
 @frozen(eq=False)
@@ -126,6 +133,26 @@ def thing(o: SceneObject) -> tuple[Look, ...]:
     else:
         mesh = rod("z", -o.length / 2, o.length / 2, o.radius)
     return (Look(o.colour, mesh.moved(t[:3, 3], t[:3, :3])),)
+
+
+def zone(z: Zone, is_broken: bool) -> tuple[Look, ...]:
+    """The twelve edges of a zone: amber where people may be, blue where a sensor looks, thick in vermilion if broken.
+
+    Colour-blind people can tell these.
+    """
+    thick = _EDGE_BROKEN if is_broken else _EDGE
+    half = np.array(z.size) / 2.0
+    mesh = Mesh()
+    for axis in range(3):
+        for one in (-1.0, 1.0):
+            for other in (-1.0, 1.0):
+                middle = half * np.insert([one, other], axis, 0.0)
+                reach = np.full(3, thick / 2.0)
+                reach[axis] += half[axis]
+                mesh = mesh + block(middle - reach, middle + reach, 0.001, 0.0005)
+    colour = _BROKEN if is_broken else (_SEEN if z.max_speed is None else _PEOPLE)
+    t = matrix_of(z.pose)
+    return (Look(colour, mesh.moved(t[:3, 3], t[:3, :3])),)
 
 
 def _strip_mesh(p: PanelConfig, angle: float, radius: float, width: float, height: float) -> Mesh:

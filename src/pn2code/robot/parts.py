@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -178,17 +178,20 @@ class Parts:
         ]
         return self._ground.rest(part.kind, self.world(part), others, self._plates, self.slack)
 
-    def turn(self, plate: str) -> None:
-        """A turntable or belt begins to move. Raises PartFault if something on it would not go with it."""
+    def turn(self, plate: str, line: frozenset[str] = frozenset()) -> None:
+        """A turntable or belt begins to move. Raises PartFault if something on it would not go with it.
+
+        `line`: the belts that run as one with it.
+        """
         riders = self.riders(plate)
-        self._expect_alone(plate, riders)
+        self._expect_alone(plate, riders, line)
         if not riders:
             return
         if not self._ground.plates[plate].upright:
             raise PartFault(
                 f"`{plate}` turns about a line that is not upright, and `{riders[0].name}` only lies on it"
             )
-        own = {plate, *(p.name for p in riders)}
+        own = {plate, *line, *(p.name for p in self._riders_of({plate, *line}))}
         for part in riders:
             off = [x for x in self.rest(part).on if x not in own]
             if off:
@@ -197,11 +200,14 @@ class Parts:
                     "which does not"
                 )
 
-    def _expect_alone(self, plate: str, riders: list[Part]) -> None:
+    def _riders_of(self, plates: Collection[str]) -> Iterator[Part]:
+        return (p for p in self.present.values() if p.plate in plates)
+
+    def _expect_alone(self, plate: str, riders: list[Part], line: frozenset[str]) -> None:
         """Nothing that goes with another turntable or belt stands on this one as well."""
         own = {plate, *(p.name for p in riders)}
         for part in self.present.values():
-            if part.plate in ("", plate):
+            if part.plate in ("", plate, *line):
                 continue
             on = sorted(own.intersection(self.rest(part).on))
             if on:
@@ -216,28 +222,29 @@ class Parts:
         goes = {x: self.present[x].plate for x in on if x in self.present}
         return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
-    def run_out(self, plate: str) -> None:
-        """A belt has come to rest. Raises PartFault if the middle of something on it has come off its end.
+    def run_out(self, line: Collection[str]) -> None:
+        """Belts that have run as one come to rest. Raises PartFault if the middle of something has come off their end.
 
-        Up to there the belt takes it along, and it does not tip over on the way; beyond, nobody knows how far it goes.
+        Up to there they take it along, and it does not tip over on the way; beyond, nobody knows how far it goes.
 
         What stands on something else now is in `settled`.
         """
         self.settled = ()
-        own = {p.name for p in self.riders(plate)}
-        for part in self.riders(plate):
+        own = {p.name for p in self._riders_of(line)}
+        for part in self._riders_of(line):
+            does = f"`{part.plate}` takes `{part.name}` along until"
             rest = self.rest(part)
             if trouble := rest.trouble(self.slack):
                 where = describe(pose_of(self.world(part)))
-                raise PartFault(
-                    f"`{plate}` takes `{part.name}` along until it is {trouble}, part at {where}"
-                )
-            off = self._beyond(plate, part)
+                raise PartFault(f"{does} it is {trouble}, part at {where}")
+            off = min(self._beyond(belt, part) for belt in line)
             if off > self.slack and not own.intersection(rest.on):
                 where = describe(pose_of(self.world(part)))
+                plates = (x for x in rest.on if x in self._plates)
+                other = next((f" (`{x}` does not run with it)" for x in plates), "")
                 raise PartFault(
-                    f"`{plate}` takes `{part.name}` along until its middle is {1000.0 * off:.1f} mm beyond the end, "
-                    f"where nothing takes it further, part at {where}"
+                    f"{does} its middle is {1000.0 * off:.1f} mm beyond the end, "
+                    f"where nothing takes it further{other}, part at {where}"
                 )
         self._settle_again()
 

@@ -19,6 +19,7 @@ from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.hulls import Hull
 from pn2code.robot.scene_objects import SceneObject, read_shape
+from pn2code.robot.solid_objects import A_BODY
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_own_pose
 
@@ -58,9 +59,7 @@ def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
         if shape is not None:
             if shape.mesh is not None and shape.mesh.is_file() and Hull.of(shape) is None:
                 # Nobody could say what it stands on, or whether it is in a zone.
-                table.wrong(
-                    "file", "an OBJ or STL file that can be read, of a body that is not flat"
-                )
+                table.wrong("file", A_BODY)
             table.done()
             out[name] = PartKind(name, shape, at, grips, tolerance, angle, mass)
     return out

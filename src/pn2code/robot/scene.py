@@ -24,9 +24,10 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.carried import WithAxes, with_axes
-from pn2code.robot.devices import read_devices, touched
+from pn2code.robot.devices import Around, read_devices, touched
 from pn2code.robot.external import read_axes
 from pn2code.robot.frames import Frames, read_frames
+from pn2code.robot.hulls import Hull
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.model import Arm, find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
@@ -39,7 +40,8 @@ from pn2code.robot.robot_cell import (
     RobotCell,
     SceneConfig,
 )
-from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
 from pn2code.robot.transforms import Array, matrix_of
@@ -91,7 +93,9 @@ def load(
     named = dict(table("robots", None).named(ROBOT))
     taken = _taken(geometry.get("primitives", {}))
     robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
-    devices = read_devices(table("devices", None), folder, places)
+    hulls = [hull for k in kinds.values() if (hull := Hull.of(k.shape)) is not None]
+    around = Around(folder, places, max((h.radius for h in hulls), default=0.0))
+    devices = read_devices(table("devices", None), around)
     scene = _scene(table("scene", SCENE), robots, devices, names, kinds, folder)
     zones = read_zones(table("zones", None))
     if len(d.errors) != before:
@@ -278,7 +282,7 @@ def _scene(
     panel = _panel(t.table("panel")) if t.has("panel") else None
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
-    objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+    objects = read_solids(t.tables("objects"), folder, solid=bool(kinds))
     plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
     contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
     _named_once(t, objects, kinds)

@@ -171,6 +171,11 @@ class Table:
             data = data[name]
         return self._inner(data, path, None)
 
+    def only(self, name: str, keys: Section) -> Table:
+        """The table of a name with some of its keys, as if it had no others."""
+        data = {key: value for key, value in self.data[name].items() if key in keys.names()}
+        return self._inner(data, (name,), keys)
+
     def inner(self, name: str) -> Section:
         """What is in each of the tables with chosen names that a key has."""
         inner = self._key(name).inner

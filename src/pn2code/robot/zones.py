@@ -84,11 +84,27 @@ class ZoneWatch:
             frame = carried_to(own, q, part)
             yield f"{robot}/{part.name}", corners @ frame[:3, :3].T + frame[:3, 3]
 
+    def boxes(self, robot: str) -> Iterator[tuple[str, int, Array]]:
+        """Each link: its name, the axis that moves it as `placed_links` has it, its corners (8, 3) in that frame."""
+        for box in self._boxes[robot]:
+            yield box.name, box.axis, box.corners
+
+    def part_box(self, kind: str) -> Array | None:
+        """The corners of the box around parts of a kind, (8, 3), in their frame; None: they have no shape."""
+        return self._kinds[kind]
+
     def off(self, zone: str, corners: Array) -> float:
         """m: how far a box is from a zone at least; negative: it is in it."""
         frame = self._frames[zone]
         own = corners @ frame[:3, :3].T + frame[:3, 3]
         return _off(own, np.array(self.cell.zones[zone].size) / 2.0)
+
+    def gaps(self, zone: str, points: Array) -> Array:
+        """m: how far points are from a zone; 0: they are in it."""
+        frame = self._frames[zone]
+        own = np.abs(points @ frame[:3, :3].T + frame[:3, 3])
+        half = np.array(self.cell.zones[zone].size) / 2.0
+        return np.asarray(np.linalg.norm(np.maximum(own - half, 0.0), axis=-1))
 
     def occupied(self, zone: str, joints: Mapping[str, Array], parts: Iterable[Part]) -> bool:
         """Whether an arm, or what it carries, is in a zone."""
@@ -200,16 +216,16 @@ def _corners(hulls: list[Hull | None]) -> Array | None:
     )
 
 
+_TURNS = np.stack([np.cross(np.eye(3)[i], np.eye(3)) for i in range(3)])
+"""Of `x`, `y`, `z`: `b @ _TURNS[i]` is the cross product of that with `b`."""
+
+
 def _off(corners: Array, half: Array) -> float:
     """How far a box is at least from one around the origin with these half lengths."""
-    edges = np.stack([corners[4] - corners[0], corners[2] - corners[0], corners[1] - corners[0]])
-    axes = [*np.eye(3), *edges, *(np.cross(a, b) for a in np.eye(3) for b in edges)]
-    best = -np.inf
-    for axis in axes:
-        long = float(np.linalg.norm(axis))
-        if long < 1e-9:
-            continue
-        along = corners @ (axis / long)
-        reach = float(np.abs(axis / long) @ half)
-        best = max(best, float(along.min()) - reach, -float(along.max()) - reach)
-    return best
+    edges = corners[[4, 2, 1]] - corners[0]
+    axes = np.vstack([np.eye(3), edges, *(edges @ turn for turn in _TURNS)])
+    long = np.sqrt(np.einsum("ij,ij->i", axes, axes))
+    axes = axes[long >= 1e-9] / long[long >= 1e-9, None]
+    along = corners @ axes.T
+    reach = np.abs(axes) @ half
+    return float(np.maximum(along.min(axis=0) - reach, -along.max(axis=0) - reach).max())

@@ -168,7 +168,7 @@ class Data:
     def _initial(self, place: int) -> bool:
         flat = self.partition.net.places[place]
         assert flat.initial is not None
-        ((_, values),) = initial_tokens(*flat.initial)
+        ((_, values),) = initial_tokens(*flat.initial, self.partition.net.program)
         assert values is not None
         token, _ = unstamped(values[0])
         try:

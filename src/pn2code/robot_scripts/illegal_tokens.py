@@ -62,7 +62,9 @@ def stops(
         if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
             continue
         place = machine.net.places[arc.place]
-        for conditions, values, _ in delayed_tokens(arc.inscription.value, arc.inscription.form):
+        inscription = arc.inscription
+        outcomes = delayed_tokens(inscription.value, inscription.form, machine.net.program)
+        for conditions, values, _ in outcomes:
             try:
                 path, _ = way(conditions, env)
                 if path is None:

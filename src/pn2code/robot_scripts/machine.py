@@ -20,6 +20,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import TCon
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form, Term
 from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts.constants import opened
 
 MAX_COEFFICIENT = 100
 """Multi-sets with more copies of a token are not counted out one by one (and are no robot program anyway)."""
@@ -164,13 +165,14 @@ def tokens(
 
 
 def delayed_tokens(
-    e: core.Exp, form: Form
+    e: core.Exp, form: Form, program: core.Program
 ) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None, core.Exp | None]]:
     """As `tokens`, of inscriptions that may have a delay, which is the third component."""
+    e = e if form in (Form.TOKEN, Form.TIMED_TOKEN) else opened(e, program)
     match e:
         case core.If(condition, then, otherwise) if form in _PLAIN:
             for holds, part in ((True, then), (False, otherwise)):
-                for conditions, found, delay in delayed_tokens(part, form):
+                for conditions, found, delay in delayed_tokens(part, form, program):
                     yield ((condition, holds), *conditions), found, delay
         case core.Apply(
             core.Builtin("Time.token@+" | "Time.token@++" | "Time.@+" | "Time.@++"),
@@ -289,7 +291,7 @@ class _Analyser:
         assert arc.inscription is not None
         out = []
         for conditions, values, delay in delayed_tokens(
-            arc.inscription.value, arc.inscription.form
+            arc.inscription.value, arc.inscription.form, self.partition.net.program
         ):
             if values is None:
                 self.d.error(
@@ -317,7 +319,7 @@ class _Analyser:
         initial = self.partition.net.places[place].initial
         if initial is None:
             return 0
-        found = list(initial_tokens(*initial))
+        found = list(initial_tokens(*initial, self.partition.net.program))
         if len(found) != 1 or found[0][1] is None:
             return None
         return len(found[0][1])
@@ -458,7 +460,9 @@ class _Analyser:
     def begins_at_once(self, control: list[int]) -> bool:
         """Whether the first token is there when the script starts; its stamp would be lost in the script."""
         for place in (self.partition.net.places[p] for p in control):
-            if place.initial is not None and not _at_once(*place.initial):
+            if place.initial is not None and not _at_once(
+                *place.initial, self.partition.net.program
+            ):
                 self.d.error(
                     codes.UNSUPPORTED_TIME,
                     f"place `{place.short}`, where the program begins, has a time stamp in its initial marking",
@@ -507,10 +511,11 @@ class _Analyser:
 
 
 def initial_tokens(
-    e: core.Exp, form: Form
+    e: core.Exp, form: Form, program: core.Program
 ) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None]]:
-    """As `tokens`, of an initial marking, in which tokens may have time stamps."""
-    return tokens(e, Form.TOKEN if form is Form.TIMED_TOKEN else form)
+    """As `tokens`, of an initial marking, which may be a constant, and in which tokens may have time stamps."""
+    plain = e if form is Form.TOKEN else opened(e, program)
+    return tokens(plain, Form.TOKEN if form is Form.TIMED_TOKEN else form)
 
 
 def unstamped(token: core.Exp) -> tuple[core.Exp, core.Exp | None]:
@@ -523,11 +528,11 @@ def unstamped(token: core.Exp) -> tuple[core.Exp, core.Exp | None]:
             return token, token if is_stamped else None
 
 
-def _at_once(e: core.Exp, form: Form) -> bool:
+def _at_once(e: core.Exp, form: Form, program: core.Program) -> bool:
     """Whether all tokens of an initial marking are available at the start, which is at 0."""
     if form in (Form.TOKEN, Form.MULTISET):
         return True
-    for _, found in initial_tokens(e, form):
+    for _, found in initial_tokens(e, form, program):
         if found is None:
             return False
         for token in found:

@@ -434,7 +434,8 @@ class StepTranslator:
         for arc in transition.arcs:
             if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
                 continue
-            found = delayed_tokens(arc.inscription.value, arc.inscription.form)
+            inscription, program = arc.inscription, self.machine.net.program
+            found = delayed_tokens(inscription.value, inscription.form, program)
             is_seen = arc.place not in self.machine.sinks and self.shapes[arc.place] != Fields(())
             for conditions, values, delay in found:
                 try:

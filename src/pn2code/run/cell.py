@@ -23,6 +23,7 @@ from typing import Any
 
 from pn2code import pipeline
 from pn2code.base.frozen import frozen
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import INPUT
 from pn2code.cell.config import CellConfig
@@ -97,6 +98,7 @@ class RunOptions:
         seed: of what sensors draw at random; None: that of cell.toml.
         checked: whether the supervisor is checked, as `pipeline.generate` does.
         realtime: on the wall clock instead of in lock-step; speed: how many times faster than that.
+        kept: what earlier commands have proved of the supervisor.
     """
 
     out: Path
@@ -110,6 +112,7 @@ class RunOptions:
     looks: bool = True
     seed: int | None = None
     checked: bool = True
+    kept: KeptAnswers | None = None
 
 
 @frozen
@@ -158,6 +161,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         checked=options.checked,
         examine=examine,
         inputs=options.input,
+        kept=options.kept,
     )
     if generated is None:
         return None

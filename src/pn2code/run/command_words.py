@@ -31,7 +31,7 @@ def kind_and_label(command: Command) -> tuple[str, str]:
         case MoveAxes():
             return "joint", "axes"
         case MoveExternal():
-            return "joint", "external"
+            return "external", "external"
         case MoveHome():
             return "home", "home"
         case MoveLinear():

@@ -55,6 +55,7 @@ from pn2code.run.handling import PartKeeper
 from pn2code.run.record import (
     ActionRecord,
     ActivityRecord,
+    BrokenZone,
     MessageRecord,
     PartRecord,
     RunRecord,
@@ -398,6 +399,8 @@ class Engine:
                 robot.asking = request
                 return
             request = self._told(robot, request, said)
+        if self._finished and isinstance(request, Execute):
+            request = Finished()  # it notices that the supervisor has, and begins nothing more (I9)
         match request:
             case AwaitFile():
                 robot.waiting = request
@@ -478,14 +481,16 @@ class Engine:
         """What belts that have come to rest have taken along stands there, or on something else."""
         if robot.arm is None or not robot.arm.robot.is_device:
             return
-        for plate in sorted(turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)):
-            self._look_at_turntables()
-            try:
-                settled = self.parts.run_out(plate)
-            except PartFault as fault:
-                raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
-            for change in settled:
-                self.record.parts.append(PartRecord(self.now, robot.name, change))
+        line = turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)
+        if not line:
+            return
+        self._look_at_turntables()
+        try:
+            settled = self.parts.run_out(line)
+        except PartFault as fault:
+            raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
+        for change in settled:
+            self.record.parts.append(PartRecord(self.now, robot.name, change))
 
     def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
@@ -507,10 +512,11 @@ class Engine:
         """What stands on a turntable that begins to turn stays there, or the cell stops."""
         if robot.arm is None:
             return
+        belts = turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)
         for plate in sorted(turned(robot.arm.robot, motion)):
             self._look_at_turntables()
             try:
-                self.parts.parts.turn(plate)
+                self.parts.parts.turn(plate, belts if plate in belts else frozenset())
             except PartFault as fault:
                 raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
 
@@ -687,6 +693,10 @@ class Engine:
         found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
         if found is not None:
             self.now = t
+            self.record.too_fast = BrokenZone(
+                found.zone.name, t, found.link, found.speed, found.point
+            )
+            self.backend.light_zone(found.zone.name)
             who = self.cell.robot(found.robot).words
             raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 

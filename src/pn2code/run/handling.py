@@ -58,9 +58,12 @@ class PartKeeper:
             )
         return change
 
-    def run_out(self, plate: str) -> tuple[PartChange, ...]:
-        """A belt has come to rest: what stands on something else now. PartFault if something has come off its end."""
-        self.parts.run_out(plate)
+    def run_out(self, line: frozenset[str]) -> tuple[PartChange, ...]:
+        """Belts that have run as one come to rest: what stands on something else now.
+
+        PartFault if something has come off their end.
+        """
+        self.parts.run_out(line)
         self._show_changed()
         return self.parts.settled
 

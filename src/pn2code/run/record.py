@@ -74,6 +74,26 @@ class ActivityRecord:
 
 
 @frozen
+class BrokenZone:
+    """Something was faster in a zone than may be there: when, which link, how fast (m/s), and the point of it (m)."""
+
+    zone: str
+    t: float
+    link: str
+    speed: float
+    point: tuple[float, float, float]
+
+    def described(self) -> dict[str, Any]:
+        """For `summary.json` and the replay page."""
+        return {
+            "t": round(self.t, 6),
+            "link": self.link,
+            "speed": round(self.speed, 6),
+            "point": [round(v, 6) for v in self.point],
+        }
+
+
+@frozen
 class Interference:
     """What a person at the page has done to the run, in words."""
 
@@ -132,6 +152,8 @@ class RunRecord:
     accuracy: dict[str, float] = field(default_factory=dict)
     pictures: dict[str, list[str]] = field(default_factory=dict)
     """of each picture that was taken, by the name of its file: the moments that look like it"""
+    too_fast: BrokenZone | None = None
+    """what has stopped the cell, when that was a zone"""
     near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
     gaps: list[tuple[float, Clearance]] = field(default_factory=list)

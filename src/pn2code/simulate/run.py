@@ -42,6 +42,7 @@ class Request:
         monitors: the monitors at work; None: none.
         breakpoints: whether breakpoints stop the run.
         files: the folder that the net may use.
+        subfolder: where the files of its monitors are put below `output` there; "": in `output`.
         progress: is told how the run goes on.
         interrupted: asked between steps: shall the run end?
     """
@@ -57,6 +58,7 @@ class Request:
     monitors: MonitorProgram | None = None
     breakpoints: bool = True
     files: Path | None = None
+    subfolder: str = ""
     progress: Progress = lambda steps, time: None
     interrupted: Callable[[], bool] = lambda: False
 

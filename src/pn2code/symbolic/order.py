@@ -72,15 +72,17 @@ class _Spans:
         self.first = np.concatenate(([0], np.cumsum(self.sizes)))[:-1].astype(np.int64)
         self.place = np.array([p for t in touched for p in t], dtype=np.int64)
         self.uses = np.bincount(self.place, minlength=places)
-        self.touched = touched
 
     def neighbours(self) -> csr_array:
         """Which places have a transition in common."""
-        pairs = [(t[i], t[i + 1]) for t in self.touched for i in range(len(t) - 1)]
-        pairs += [(t[0], p) for t in self.touched if len(t) <= _WIDE for p in t[2:]]
-        a = np.array([x for x, _ in pairs], dtype=np.int64)
-        b = np.array([y for _, y in pairs], dtype=np.int64)
-        ones = np.ones(2 * len(pairs), dtype=np.int8)
+        of = np.repeat(np.arange(len(self.sizes)), self.sizes)  # arc -> its transition
+        first = self.place[self.first[of]]
+        behind = np.arange(len(of)) - self.first[of]  # arc -> its number there
+        next_ = np.flatnonzero(behind >= 1)
+        also = np.flatnonzero((behind >= 2) & (self.sizes[of] <= _WIDE))
+        a = np.concatenate((self.place[next_ - 1], first[also]))
+        b = np.concatenate((self.place[next_], self.place[also]))
+        ones = np.ones(2 * len(a), dtype=np.int32)
         shape = (self.places, self.places)
         return csr_array((ones, (np.concatenate((a, b)), np.concatenate((b, a)))), shape=shape)
 

@@ -30,6 +30,7 @@ from pn2code.timing.longest import Way, longest_inside
 from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
+from pn2code.verify.controller.control_types import CellProgram
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
@@ -81,6 +82,7 @@ def look(
     d: Diagnostics,
     stage: Callable[[str], None] = lambda _text: None,
     measured: Callable[[Measured], None] = lambda _layout: None,
+    program: CellProgram | None = None,
 ) -> Times | None:
     """Measures everything; None after an error that was reported.
 
@@ -92,6 +94,7 @@ def look(
         d: gets the errors.
         stage: hears in words what is done.
         measured: hears of each layout what was gone through.
+        program: what was compiled of this cell, in which nothing is wrong; None: nothing.
     """
     config = opened.config
     if config is None:
@@ -102,14 +105,15 @@ def look(
             hint="give a cell.toml or its folder; a net alone is played by `pn2code simulate`",
         )
         return None
-    partition = partition_of(opened, config, d)
+    known = None if program is None else program.running.partition
+    partition = known or partition_of(opened, config, d)
     cells = cells_of(config, layout, d)
     if partition is None or cells is None:
         return None
     timeout = config.supervisor.reply_timeout_s
     stage("exploring the cell as its programs run ...")
     try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial, program)
     except NotModelledError as problem:
         return Times((), timeout, f"the cell as it runs cannot be modelled: {problem}")
     if graph is None:

@@ -101,7 +101,8 @@ def with_durations(
     measured: list[Measured] = []
     try:
         with limits.deadline.enforced():
-            times = look(opened, None, limits, None, d, measured=measured.append)
+            program = None if control is None else control.program
+            times = look(opened, None, limits, None, d, measured=measured.append, program=program)
             if times is None:
                 return None
             judge = _Judge(control, opened, asked, times, measured, folder)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import codes, sources
 from pn2code.properties import meaning as m
@@ -28,6 +29,8 @@ class Asked:
     """of all but those about bindings"""
     splits: tuple[tuple[Split, str], ...] = ()
     """nets for those about bindings, each with its questions"""
+    partition: Partition | None = None
+    """the cell that it is asked of, for all who look at what its programs do; None: the net is no cell"""
 
     def __bool__(self) -> bool:
         """Whether anything is asked."""

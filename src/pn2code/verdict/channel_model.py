@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
 from pn2code.channel_model.by_cell import Shown
 from pn2code.channel_model.check import WHOLE, Answer, Evidence, check_channel_model
 from pn2code.channel_model.faults import SAYS
@@ -27,6 +27,7 @@ Answers = tuple[Answer, ...]
 
 def look(
     opened: OpenNet,
+    partition: Partition | None,
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
@@ -37,16 +38,16 @@ def look(
 
     Args:
         opened: the net.
+        partition: who runs what in it; None: it is no cell.
         found: its own state space. Where that is too large, that with the medium is as well, and a part is seen.
         limits: of each exploration.
         options: who is told of the progress, and who may interrupt.
         d: gets the errors.
         control: the checks of its supervisor; None: they were not asked.
     """
-    if opened.config is None or found.why in ("interrupted", "error") or options.interrupted():
+    if opened.config is None or partition is None:
         return ()
-    partition = divide(opened.flat, opened.config, d)
-    if partition is None:
+    if found.why in ("interrupted", "error") or options.interrupted():
         return ()
     is_small = found.complete or found.why in ("decided", "approximation", COUNTED)
     is_open = not is_small and limits.deadline.is_over()

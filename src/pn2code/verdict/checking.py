@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pn2code.base.frozen import frozen
+from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
@@ -48,6 +49,7 @@ def check(
     *,
     int_bits: int = 31,
     inputs: Path | None = None,
+    kept: KeptAnswers | None = None,
 ) -> Checked:
     """Looks at a net or cell without running it.
 
@@ -57,6 +59,7 @@ def check(
         d: gets the errors and warnings.
         int_bits: width of `int`.
         inputs: the input files of the cell, if not those beside cell.toml.
+        kept: what earlier commands have found of its robots and scene.
     """
     found = locate(path, d)
     if found is None:
@@ -70,7 +73,7 @@ def check(
         emptiness.warn(result.flat, d)
     channels: tuple[ChannelRow, ...] = ()
     if config is not None:
-        partition = examine_cell(file, config, result, d, inputs=inputs)
+        partition = examine_cell(file, config, result, d, inputs=inputs, kept=kept)
         if partition is not None:
             channels = rows(partition, config)
     else:
@@ -90,6 +93,7 @@ def examine_cell(
     *,
     ahead: bool = True,
     inputs: Path | None = None,
+    kept: KeptAnswers | None = None,
 ) -> Partition | None:
     """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
 
@@ -100,6 +104,7 @@ def examine_cell(
         d: gets the errors.
         ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
         inputs: the input files, if not those beside cell.toml.
+        kept: what earlier commands have found of its robots and scene.
 
     Returns:
         Who runs what; None after an error in that.
@@ -111,16 +116,18 @@ def examine_cell(
     if result.flat is None or d.has_errors:
         check_geometry(config, d, to_run=True)
         return None
-    partition = divided(result.flat, config, d, to_run=True)
+    partition = divided(result.flat, config, d, to_run=True, kept=kept)
     programs = lower_robots(partition, config, d) if partition is not None else None
     _properties(net, config, result, d)
     if ahead and partition is not None and programs is not None and not d.has_errors:
         from pn2code.verdict.ahead import look_ahead
-        from pn2code.verify.controller import long_timers, short_timers
 
-        short_timers.warn(partition, config, d)
-        long_timers.warn(partition, config, d)
-        look_ahead(partition, config, programs, d, inputs)
+        if partition.net.timed:  # a timer is a place whose token has a time
+            from pn2code.verify.controller import long_timers, short_timers
+
+            short_timers.warn(partition, config, d)
+            long_timers.warn(partition, config, d)
+        look_ahead(partition, config, programs, d, inputs, kept)
     return partition
 
 

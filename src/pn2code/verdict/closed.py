@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
-from pn2code.verdict import properties
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.exploring import net_by_counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -21,7 +21,13 @@ from pn2code.verify.exploring.result import COUNTED, Exploration
 
 
 def explored(
-    opened: OpenNet, limits: Limits, options: ExploreOptions, d: Diagnostics, *, may_count: bool
+    opened: OpenNet,
+    limits: Limits,
+    options: ExploreOptions,
+    d: Diagnostics,
+    *,
+    may_count: bool,
+    partition: Partition | None,
 ) -> Exploration | None:
     """The state space; None after an error that was reported.
 
@@ -30,6 +36,7 @@ def explored(
         limits, options: as for `explore`.
         d: gets the errors.
         may_count: whether less than all markings is enough.
+        partition: the cell; None: the net is none.
     """
     first = limits.counts_from
     plain = not (limits.reductions or limits.approximation or options.graph)
@@ -42,7 +49,6 @@ def explored(
     found = explore(opened.flat, opened.storage, part, d, soon)
     if found is None or found.why != "states":
         return found
-    partition = properties.divided(opened, Diagnostics())
     final = () if partition is None else partition.final_places
     known = net_by_counts.look(opened.flat, opened.storage, limits, options, final)
     if known is not None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.arms import Arms
-from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
@@ -29,6 +29,7 @@ QUICK_STATES = 5_000
 
 def look(
     opened: OpenNet,
+    partition: Partition | None,
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
@@ -40,6 +41,7 @@ def look(
 
     Args:
         opened: the net.
+        partition: who runs what in it; None: it is no cell.
         found: its state space. Where that is too large, the one that the checks need is as well, and a part is seen.
         limits, options: of the exploration.
         folder: where traces go.
@@ -47,10 +49,7 @@ def look(
         asked: the properties.
     """
     config = opened.config
-    if config is None:
-        return None
-    partition = divide(opened.flat, config, d)
-    if partition is None:
+    if config is None or partition is None:
         return None
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)

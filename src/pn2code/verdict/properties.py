@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
-from pn2code.cell.divide import divide
-from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes
@@ -117,7 +115,7 @@ def _bindings_of_cell(
     """Those of a cell as it runs: its net is made of the parts of the transitions."""
     if control is None:
         return closed
-    partition = divided(opened, d)
+    partition = asked.partition
     if partition is None:
         return closed
     running = control.running
@@ -167,17 +165,13 @@ def _bindings_of_cell(
     )
 
 
-def are_of_states(asked: Asked, opened: OpenNet) -> bool:
+def are_of_states(asked: Asked) -> bool:
     """Whether all that is asked of a cell is known where each state of it stands for many markings."""
     if not asked:
         return True
-    partition = divided(opened, Diagnostics())
-    return partition is not None and not asked.splits and all_stated(asked.properties, partition)
-
-
-def divided(opened: OpenNet, d: Diagnostics) -> Partition | None:
-    """The owners of a cell; None: it is none, or an error was reported."""
-    return None if opened.config is None else divide(opened.flat, opened.config, d)
+    if asked.partition is None or asked.splits:
+        return False
+    return all_stated(asked.properties, asked.partition)
 
 
 @contextmanager
@@ -234,9 +228,16 @@ def answered(
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if nondeterminism.counts(opened.flat):
         plain, more = tuple(map(counted, plain)), tuple(map(counted, more))
-    if control is not None and (partition := divided(opened, d)) is not None:
+    if control is not None and asked.partition is not None:
         plain = tuple(
-            of_cell(asked.plain, control.answers, control, partition, plain, storage=opened.storage)
+            of_cell(
+                asked.plain,
+                control.answers,
+                control,
+                asked.partition,
+                plain,
+                storage=opened.storage,
+            )
         )
     by_name = {answer.about.name: answer for answer in (*plain, *more)}
     given = tuple(by_name[p.name] for p in asked.properties.properties)

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
@@ -169,7 +170,7 @@ def question(
             long_timers.warn(partition, opened.config, d)
     asked = gather(opened, texts, file, d, found=found)
     nondeterminism.warn(opened.flat, d)
-    return asked
+    return asked if opened.config is None else replace(asked, partition=partition)
 
 
 def look(
@@ -208,9 +209,9 @@ def look(
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
     of_net = own_options or options
     if is_cell and of_net.covering and of_net.sizes is not None:
-        of_net = replace(of_net, heaps=_open_channels(opened, of_net.sizes))
-    may_count = is_cell and properties.are_of_states(asked, opened)
-    found = closed.explored(opened, part, of_net, d, may_count=may_count)
+        of_net = replace(of_net, heaps=_open_channels(asked.partition, of_net.sizes))
+    may_count = is_cell and properties.are_of_states(asked)
+    found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=asked.partition)
     if found is None:
         return None
     control: Control | None = None
@@ -219,20 +220,21 @@ def look(
             options.stage("exploring the cell as its programs run ...")
         has_more = checks.channel_model and is_cell
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
-        control = controller.look(opened, found, part, options, folder, d, asked.plain)
+        control = controller.look(
+            opened, asked.partition, found, part, options, folder, d, asked.plain
+        )
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: channel_model.Answers = ()
     if checks.channel_model:
         if opened.config is not None:
             options.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
-        seen = channel_model.look(opened, found, limits, options, d, looked)
+        seen = channel_model.look(opened, asked.partition, found, limits, options, d, looked)
     return Looked(found, control, more, seen)
 
 
-def _open_channels(opened: OpenNet, sizes: Sizes) -> frozenset[int]:
+def _open_channels(partition: Partition | None, sizes: Sizes) -> frozenset[int]:
     """The channels in which the structure of the net bounds no messages: a file holds one."""
-    partition = properties.divided(opened, Diagnostics())
     channels = () if partition is None else (c.place for c in partition.channels)
     return frozenset(channels) - set(sizes.bounds or ())
 

@@ -224,10 +224,9 @@ def test_function_heads() -> None:
         ("(* only this *)", "syntax-error | text is empty, an expression expected | "),
         ("x as y", "syntax-error | `as` cannot be used here | as"),
         ("val x = 1", "syntax-error | unexpected `val`, an expression expected | val"),
-        ("fn #[a, b] => a", "unsupported-ml | a vector in a pattern is not supported | #["),
         (
-            "case v of #[] => 1 | _ => 2",
-            "unsupported-ml | a vector in a pattern is not supported | #[",
+            '"a\tb"',
+            "lexical-error | a string holds a tab or another character that is not printed | \t",
         ),
     ],
 )

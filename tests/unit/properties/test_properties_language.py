@@ -398,4 +398,6 @@ def test_members_of_a_fusion_set_are_one_place(tmp_path: Path) -> None:
     d = Diagnostics()
     found = front.examine(write(text, tmp_path / "plant.cpn"), d)
     assert found.flat is not None, report(d)
-    assert asked(found, "bound Alarm <= 1") == asked(found, "bound Top'Alarm <= 1")
+    one = asked(found, "bound Alarm <= 1")
+    for path in ("Top'Alarm", '"Fusion.Alarms"', '"Top.Alarm"', '"Top.Left.Alarm"'):
+        assert asked(found, f"bound {path} <= 1") == one

@@ -15,9 +15,10 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.legs import Planner
 from pn2code.replay.cell import at_start, describe
-from pn2code.robot.belts import until_stop
+from pn2code.robot.belts import stopping, told_to_run, until_stop
 from pn2code.robot.commands import Along, Handling, MoveExternal, ToolAction
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import Part, PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
@@ -96,11 +97,11 @@ def test_what_stands_on_a_belt_goes_with_it_and_what_comes_off_its_end_is_a_faul
     assert [p.plate for p in parts.present.values()] == ["feeder/belt"] * 2
     parts.stand("feeder", np.array([0.4]))
     assert (place(cell, parts, "box.1"), place(cell, parts, "box.2")) == (0.6, 1.1)
-    parts.run_out("feeder/belt")
+    parts.run_out({"feeder/belt"})
     assert parts.settled == ()
     parts.stand("feeder", np.array([0.7]))
     with pytest.raises(PartFault, match="`feeder/belt` takes `box.2` along until it is"):
-        parts.run_out("feeder/belt")
+        parts.run_out({"feeder/belt"})
 
 
 def test_nothing_is_handled_on_a_belt_that_runs() -> None:
@@ -175,6 +176,8 @@ def test_what_is_wrong_with_a_belt_is_said() -> None:
         ({"pose": {"z": 0.5, "roll": 5.0}}, "belt `belt` is not level"),
         ({"length": None}, "is missing"),
         ({"length": 1.0}, "is 1 m long, but its stop `infeed` is at 1.1 m"),
+        ({"pose": {"x": 1.75, "y": -1.7, "z": 0.5, "yaw": 90.0}}, "is 0.25 m beside its middle"),
+        ({"pose": {"x": 1.5, "y": -1.7, "z": 0.6, "yaw": 90.0}}, "is 0.025 m below its top"),
         ({"pose": {"x": 2.5, "y": -0.6, "z": 0.5}}, "its stop `infeed` is at -1 m"),
     ):
         cell, said = cell_of(**changed)
@@ -257,3 +260,136 @@ def test_a_belt_takes_nothing_along_that_has_left_it(way: float) -> None:
     off = f"{1000.0 * way - 700.0:.1f} mm beyond the end, where nothing takes it further"
     assert found.is_part and f"takes `box.1` along until its middle is {off}" in found.fault
     assert doing.of("feeder", (run(0.7),), home, doing.start, (home,)).doubt
+
+
+# --- lines of belts ------------------------------------------------------------------------------
+
+
+def line(at: tuple[float, ...] = (), **away: Any) -> tuple[RobotCell | None, list[str]]:
+    """The belt of 0.6 m drives another one that goes on where it ends, which has the stop."""
+    data = tomllib.loads(TOML)
+    axes = data["devices"]["feeder"]["axes"]
+    first = axes["belt"]
+    stop = first.pop("stop")
+    axes["away"] = first | {
+        "pose": {"x": 1.5, "y": -1.1, "z": 0.5, "yaw": 90.0},
+        "length": 0.7,
+        "stop": stop,
+    }
+    axes["away"] |= away
+    first |= {"length": 0.6, "drives": ["away"]}
+    data["parts"]["box"]["at"] = [{"x": 1.5, "y": -1.7 + x, "z": 0.575} for x in at]
+    d = Diagnostics()
+    return load(data, Path(), nowhere, d), [e.message for e in d.errors]
+
+
+def lined(at: tuple[float, ...] = (), **away: Any) -> RobotCell:
+    cell, said = line(at, **away)
+    assert cell is not None, said
+    return cell
+
+
+def test_belts_in_line_run_as_one() -> None:
+    cell = lined((0.2,))
+    feeder = cell.robot("feeder")
+    executor = RobotExecutor(feeder, cell.motion)
+    motion = executor.begin(run(0.9), 0.0)
+    for t in np.linspace(0.0, motion.duration, 7):
+        q = motion.q(float(t))
+        assert q[0] == q[1]
+    executor.finish()
+    assert executor.q.tolist() == [0.9, 0.9]
+    executor.begin(MoveExternal((Along("away", 0.1, True),)), 0.0)
+    executor.finish()
+    assert executor.q.tolist() == [0.9, 1.0]
+    executor.begin(run(1.3), 0.0)  # as long as both
+    executor.finish()
+    with pytest.raises(MotionFault, match="would be at 1301.00 mm, outside 0.00 .. 1300.00"):
+        executor.begin(run(1.301), 0.0)
+
+
+def test_belts_in_line_stop_as_one() -> None:
+    for at, told, runs in (
+        ((0.2,), 1.2, 0.9),
+        ((0.2, 0.7), 1.2, 0.4),
+        ((0.2, 1.1), 1.2, 0.0),
+        ((1.2, 0.5), 1.2, 0.6),
+        ((), 1.2, 1.2),
+    ):
+        cell = lined(at)
+        command = until_stop(cell.robot("feeder"), Parts(cell), run(told))
+        assert isinstance(command, MoveExternal)
+        assert command.along[0].position == pytest.approx(runs), at
+    feeder = lined().robot("feeder")
+    assert told_to_run(feeder, run(1.0)) == {"feeder/belt", "feeder/away"}
+    assert set(stopping(feeder, run(1.0))) == {"belt"}
+
+
+@pytest.mark.parametrize(("way", "on"), [(0.2, "belt"), (0.55, "away"), (0.9, "away")])
+def test_what_comes_off_a_belt_is_carried_on_by_the_one_it_drives(way: float, on: str) -> None:
+    cell = lined((0.2,))
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    found = doing.of("feeder", (run(way),), home, doing.start, (home,))
+    assert not found.fault and not found.doubt, (found.fault, found.doubt)
+    assert found.turns == {"feeder/belt", "feeder/away"}
+    after = found.after.parts
+    assert place(cell, after, "box.1") == round(0.2 + way, 6)
+    assert after.present["box.1"].plate == f"feeder/{on}"
+    # And by that one alone, further on.
+    if way == 0.9:
+        away = MoveExternal((Along("away", 0.1, True),))
+        again = doing.of("feeder", (away,), home, found.after, (home,))
+        assert not again.turns  # it is at the stop
+
+
+def test_half_way_over_neither_belt_runs_alone() -> None:
+    cell = lined((0.55,))
+    parts = Parts(cell)
+    both = frozenset({"feeder/belt", "feeder/away"})
+    for plate in both:
+        parts.turn(plate, both)
+        with pytest.raises(PartFault, match="also stands on `feeder/"):
+            parts.turn(plate, frozenset({plate}))
+
+
+def test_what_comes_off_the_end_of_a_line_is_a_fault() -> None:
+    cell = lined((1.2,))
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    fallen = doing.of("feeder", (run(0.2),), home, doing.start, (home,))
+    assert fallen.is_part and "`feeder/away` takes `box.1` along until it is" in fallen.fault
+
+
+def test_a_belt_that_is_not_driven_takes_nothing_on() -> None:
+    cell = two_belts(0.6)
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    found = doing.of("feeder", (run(0.75),), home, doing.start, (home,))
+    assert "where nothing takes it further (`feeder/away` does not run with it)" in found.fault
+
+
+def test_whoever_handles_parts_near_a_line_that_runs_is_seen() -> None:
+    """Near the second belt, with a part that is still on the first one: it would pass there."""
+    cell = lined((0.2,))
+    doing = Doing(Planner(cell), cell)
+    assert doing.within("feeder/away", (np.array([1.9, -0.7, 0.6]), 0.1), [doing.start])
+    assert not doing.within("feeder/away", (np.array([2.6, -0.7, 0.6]), 0.1), [doing.start])
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"pose": {"x": 1.5, "y": -1.09, "z": 0.5, "yaw": 90.0}}, "it begins 610.0 mm along it, "),
+        ({"pose": {"x": 1.5, "y": -1.1, "z": 0.51, "yaw": 90.0}}, "and 10.0 mm above it"),
+        ({"pose": {"x": 1.5, "y": -1.1, "z": 0.5, "yaw": 91.0}}, "does not go on in line"),
+        ({"width": 0.3}, "drives `away`, which is narrower than `belt`"),
+        ({"drives": ["belt"]}, "drives `away`, which belongs to another line"),
+        ({"drives": ["away"]}, "drives `away`, which belongs to another line"),
+        ({"drives": ["far"]}, "drives `far`, which is no belt of this device"),
+        ({"drives": "belt"}, "but a list of names is expected"),
+    ],
+)
+def test_what_is_wrong_with_a_line_is_said(changed: dict[str, Any], words: str) -> None:
+    cell, said = line(**changed)
+    assert cell is None and any(words in e for e in said), said

@@ -136,6 +136,14 @@ def test_what_is_wrong_with_axes_is_said() -> None:
             {"vice__pose": {"x": 3.0, "z": 0.62}},
             "opens to 0.12 m, but what it holds, at `inVice`, is 2 m beside",
         ),
+        (
+            {"vice__pose": {"x": 1.0, "z": 0.2, "yaw": 90.0}},
+            "along the z of its `pose`, but what it holds, at `inVice`, is 0.475 m away",
+        ),
+        (
+            {"vice__pose": {"x": 1.5, "z": 0.62, "yaw": 90.0}},
+            "along the y of its `pose`, but what it holds, at `inVice`, is 0.5 m away",
+        ),
         ({"door__direction": [0.0, 0.0, 0.0]}, "three numbers, not all of them 0"),
         ({"stand": DATA["devices"]["mill"]["axes"]["door"]}, "are called `stand`"),
         ({"vice_1": DATA["devices"]["mill"]["axes"]["door"]}, "are called `vice_1`"),

@@ -262,6 +262,26 @@ def test_a_window_needs_a_display(monkeypatch):
 
 
 @pytest.mark.parametrize("text", ["not a mesh", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"])
+def test_what_parts_stand_on_is_a_body(text, tmp_path):
+    """Else what stands on it would be said to be in the air."""
+    (tmp_path / "sheet.obj").write_text(text, encoding="utf-8")
+    sheet = {"name": "sheet", "kind": "mesh", "file": "sheet.obj"}
+    door = {"from": 0.0, "to": 1.0, "objects": [sheet]}
+    parts = {"box": {"size": [0.1, 0.1, 0.1]}}
+    cells = (
+        ("objects", {"parts": parts, "scene": {"objects": [sheet]}}),
+        ("door.objects", {"parts": parts, "devices": {"mill": {"axes": {"door": door}}}}),
+    )
+    for where, geometries in cells:
+        d = Diagnostics()
+        assert load(geometries, tmp_path, nowhere, d) is None
+        (error,) = d.errors
+        assert f"{where}" in error.message and "of a body that is not flat" in error.message
+    # Where there are no parts, nothing stands on it.
+    assert load({"scene": {"objects": [sheet]}}, tmp_path, nowhere, Diagnostics()) is not None
+
+
+@pytest.mark.parametrize("text", ["not a mesh", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"])
 def test_a_part_is_a_body(text, tmp_path):
     """Of what cannot be read, or is flat, nobody could say what it stands on when it is released."""
     (tmp_path / "sheet.obj").write_text(text, encoding="utf-8")

@@ -214,6 +214,14 @@ mark Top.Robot.Finish with n = n"""
     assert "var n : int := 0" in cell.text
 
 
+def test_tokens_may_be_constants_of_the_declarations(tmp_path: Path) -> None:
+    named = COUNTER.replace("= 1`0", "= start").replace(
+        "      both Ready\n", "      in Ready\n      out Ready : again\n"
+    )
+    values = "val one = 1; val start = one`0; val none = empty : unit ms; val again = 1`() ++ none;"
+    assert Cell(tmp_path, named, extra=values).body == Cell(tmp_path, COUNTER).body
+
+
 def test_the_target_of_a_transition_may_depend_on_data(tmp_path: Path) -> None:
     cell = Cell(tmp_path, SORTER, ("x in INT", "y out INT"))
     assert cell.messages == []

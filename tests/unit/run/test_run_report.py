@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -16,8 +17,10 @@ from pn2code.cell.config import ReportConfig
 from pn2code.report import album, charts
 from pn2code.report.activities import activities, busy_seconds
 from pn2code.report.album import Album
-from pn2code.report.summary import page, summarise
+from pn2code.report.summary import KINDS, page, summarise
+from pn2code.robot.commands import MoveExternal, MoveHome, ToolAction
 from pn2code.run.cell import _warn
+from pn2code.run.command_words import kind_and_label
 from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord
 
 ROBOTS = ("arm", "mill")
@@ -213,3 +216,13 @@ def test_condition_numbers_are_given_by_what_is_counted(record: RunRecord) -> No
     assert "condition number, arm" in printed
     assert "worst 9.0 at 3.00 s; at grips: 4.5 4.5; at welds: 6.5 6.5" in printed
     assert printed.count("6.5") == 12 and "6.5 ..." in printed
+
+
+def test_each_kind_of_command_is_counted_and_has_a_colour_everywhere(root: Path) -> None:
+    said = [kind_and_label(c)[0] for c in (MoveExternal(()), MoveHome(), ToolAction("grip", 1.0))]
+    assert said == ["external", "home", "tool"] and set(said) <= set(KINDS)
+    assert list(charts.COLOURS) == list(KINDS)
+    page_ = (root / "templates/web/timeline.js").read_text(encoding="utf-8")
+    row = re.search(r"KINDS = .*?\(\{(.*?)\}\)", page_, re.DOTALL)
+    assert row is not None
+    assert dict(re.findall(r'(\w+): "(#\w+)"', row[1])).keys() == charts.COLOURS.keys()

@@ -94,6 +94,9 @@ def made(cell: tuple[OpenNet, Partition], text: str) -> Stated | None:
         ("ctl AF tokens(Finished) = 1", "Finished over", "Finished"),
         ("ctl AG EF tokens(Finished) = 1", "Finished over", "Finished"),
         ("ltl G F tokens(Finished) = 1", "Finished over", "Finished"),
+        ("ctl AG (tokens(Got) = 1 -> AF tokens(Finished) = 1)", "Finished over", "Finished"),
+        ("every tokens(Got) = 1 is followed by tokens(Finished) = 1", "Finished over", "Finished"),
+        ("every fires(Send) is followed by tokens(Finished) = 1", "Finished over", "Finished"),
         (
             "every fires(Send) is followed by tokens(Busy) >= 1 within 1 firings",
             "Busy Feeder",
@@ -121,7 +124,8 @@ def test_conditions_on_states(
         "ctl EF (tokens(Got) = 1 && EX tokens(Got) = 2)",
         "ctl EG tokens(Got) = 0",
         "ltl F fires(Send)",
-        "every tokens(Got) = 1 is followed by tokens(Finished) = 1",
+        "ctl AG (tokens(Got) = 1 -> AX tokens(Finished) = 1)",
+        "ltl tokens(Got) = 1 -> F tokens(Finished) = 1",
         "every fires(Send) is followed by fires(End)",
     ],
 )

@@ -9,6 +9,12 @@
  *     A[a U b]  the least set with b, and with the nodes of a that are not dead and have all successors in it
  *
  * Both grow from b backwards; for the second each node counts the successors that are not in it yet.
+ *
+ * Of a part of the graph some nodes are *cut*: they have successors that are not there, and of which nothing is known.
+ * There each item has two sets, of the nodes that are surely in it and of those that may be in it, which are the least
+ * and the greatest that it can be, whatever the missing successors are (G. Bruns, P. Godefroid, *Model checking partial
+ * state spaces with 3-valued temporal logics*, 1999). The negation of the one is made of the other. For what is sure,
+ * a missing successor is in nothing; for what may be, it is in everything.
  */
 #include "explore_query.h"
 
@@ -77,8 +83,48 @@ static void add_before(const ex_queries_t *queries, const uint64_t *a, uint32_t 
     }
 }
 
-/* Grows `set`, which holds b, to an until; a is NULL where every node will do. `left`: of each node the successors that
- * are not in the set; NULL: one successor is enough. */
+static bool is_cut(const ex_graph_t *graph, uint32_t node)
+{
+    return (graph->cut != NULL) && (EX_BIT(graph->cut, node) != 0U);
+}
+
+static bool is_of(const uint64_t *set, uint32_t node)
+{
+    return (set == NULL) || (EX_BIT(set, node) != 0U);
+}
+
+/* What a set is that is worked out: that of `item->may`, or of `item->set`. */
+typedef enum side { SURELY, MAYBE } side_t;
+
+static side_t other(side_t side)
+{
+    return (side == SURELY) ? MAYBE : SURELY;
+}
+
+/* Adds the nodes of `a` (NULL: all) that may be in a set because of what their missing successors may be. `left`: those
+ * that have no other ones; NULL: all. */
+static void add_cut(const ex_queries_t *queries, const uint64_t *a, const uint32_t *left, uint64_t *set)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        if (is_cut(graph, node) && is_of(a, node) && ((left == NULL) || (left[node] == 0U))) {
+            EX_SET_BIT(set, node);
+        }
+    }
+}
+
+/* Of each node the successors that have to be in a set before it is in it; one that is missing and never is. */
+static void count_left(const ex_queries_t *queries, side_t side, uint32_t *left)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        const uint32_t missing = ((side == SURELY) && is_cut(graph, node)) ? 1U : 0U;
+        left[node] = (uint32_t)(graph->row[node + 1U] - graph->row[node]) + missing;
+    }
+}
+
+/* Grows `set`, which holds b, to an until; a is NULL where every node will do. `left`: as above; NULL: one successor is
+ * enough. */
 static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32_t *left, uint32_t *stack)
 {
     const ex_graph_t *const graph = queries->run->graph;
@@ -88,9 +134,6 @@ static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32
         if (EX_BIT(set, node) != 0U) {
             stack[waiting] = node;
             waiting += 1U;
-        }
-        if (left != NULL) {
-            left[node] = (uint32_t)(graph->row[node + 1U] - graph->row[node]);
         }
     }
     while (waiting > 0U) {
@@ -108,7 +151,7 @@ static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32
                     continue;
                 }
             }
-            if ((EX_BIT(set, source) == 0U) && ((a == NULL) || (EX_BIT(a, source) != 0U))) {
+            if ((EX_BIT(set, source) == 0U) && is_of(a, source)) {
                 EX_SET_BIT(set, source);
                 stack[waiting] = source;
                 waiting += 1U;
@@ -118,13 +161,19 @@ static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32
     return true;
 }
 
-static bool until(ex_queries_t *queries, const uint64_t *a, uint64_t *set, bool is_universal)
+static bool until(ex_queries_t *queries, const uint64_t *a, uint64_t *set, bool is_universal, side_t side)
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
     uint32_t *const stack = ex_table(&run->memory, nodes, sizeof *stack);
     uint32_t *const left = is_universal ? ex_table(&run->memory, nodes, sizeof *left) : NULL;
     const bool has_memory = (stack != NULL) && (!is_universal || (left != NULL)) && turn_arcs(queries);
+    if (has_memory && is_universal) {
+        count_left(queries, side, left);
+    }
+    if (has_memory && (side == MAYBE)) {
+        add_cut(queries, a, left, set);
+    }
     const bool is_done = has_memory && grow(queries, a, set, left, stack);
     ex_free_table(&run->memory, stack, nodes, sizeof *stack);
     if (is_universal) {
@@ -151,56 +200,74 @@ static void combine(const ex_queries_t *queries, uint64_t *set, const uint64_t *
     }
 }
 
-bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
+/* The nodes with a successor (by a transition; UINT32_MAX: any) that is in a set, on one side. */
+static void step_before(const ex_queries_t *queries, const uint64_t *a, uint32_t transition, side_t side, uint64_t *set)
 {
-    const uint64_t *const a = queries->item[item->a].set;
-    const uint64_t *const b = queries->item[item->b].set;
+    add_before(queries, a, transition, set);
+    if (side == MAYBE) {
+        add_cut(queries, NULL, NULL, set);
+    }
+}
+
+/* AX, not EX not a; EG and AG, not AF not a, and not EF not a. */
+static bool opposite(ex_queries_t *queries, ex_item_kind_t kind, const uint64_t *a, side_t side, uint64_t *set)
+{
+    bool is_fine = true;
+    if (kind == EX_ITEM_AX) {
+        uint64_t *const outside = ex_set(queries);
+        is_fine = outside != NULL;
+        if (is_fine) {
+            copy(queries, outside, a);
+            complement(queries, outside);
+            step_before(queries, outside, UINT32_MAX, other(side), set);
+        }
+        ex_free(&queries->run->memory, outside, ex_set_words(queries->run->graph) * sizeof *outside);
+    } else {
+        copy(queries, set, a);
+        complement(queries, set);
+        is_fine = until(queries, NULL, set, kind == EX_ITEM_EG, other(side));
+    }
+    complement(queries, set);
+    return is_fine;
+}
+
+static uint64_t *side_of(const ex_item_t *item, side_t side)
+{
+    return (side == SURELY) ? item->set : item->may;
+}
+
+/* The set of an item on one side; NULL: no memory, or told to stop. */
+static uint64_t *work_out(ex_queries_t *queries, const ex_item_t *item, side_t side)
+{
+    const uint64_t *const a = side_of(&queries->item[item->a], side);
+    const uint64_t *const b = side_of(&queries->item[item->b], side);
     uint64_t *const set = ex_set(queries);
     bool is_fine = set != NULL;
     if (!is_fine) {
-        return false;
+        return NULL;
     }
     switch (item->kind) {
     case EX_ITEM_NOT:
-        copy(queries, set, a);
+        copy(queries, set, side_of(&queries->item[item->a], other(side)));
         complement(queries, set);
         break;
     case EX_ITEM_AND:
     case EX_ITEM_OR: combine(queries, set, a, b, item->kind == EX_ITEM_AND); break;
-    case EX_ITEM_EX: add_before(queries, a, UINT32_MAX, set); break;
-    case EX_ITEM_EXA: add_before(queries, a, item->number, set); break;
+    case EX_ITEM_EX: step_before(queries, a, UINT32_MAX, side, set); break;
+    case EX_ITEM_EXA: step_before(queries, a, item->number, side, set); break;
     case EX_ITEM_EF:
-        copy(queries, set, a);
-        is_fine = until(queries, NULL, set, false);
-        break;
     case EX_ITEM_AF:
         copy(queries, set, a);
-        is_fine = until(queries, NULL, set, true);
+        is_fine = until(queries, NULL, set, item->kind == EX_ITEM_AF, side);
         break;
     case EX_ITEM_EU:
     case EX_ITEM_AU:
         copy(queries, set, b);
-        is_fine = until(queries, a, set, item->kind == EX_ITEM_AU);
+        is_fine = until(queries, a, set, item->kind == EX_ITEM_AU, side);
         break;
-    case EX_ITEM_AX: { /* not EX not a */
-        uint64_t *const other = ex_set(queries);
-        is_fine = other != NULL;
-        if (is_fine) {
-            copy(queries, other, a);
-            complement(queries, other);
-            add_before(queries, other, UINT32_MAX, set);
-            complement(queries, set);
-        }
-        ex_free(&queries->run->memory, other, ex_set_words(queries->run->graph) * sizeof *other);
-        break;
-    }
-    case EX_ITEM_EG: /* not AF not a */
-    case EX_ITEM_AG: /* not EF not a */
-        copy(queries, set, a);
-        complement(queries, set);
-        is_fine = until(queries, NULL, set, item->kind == EX_ITEM_EG);
-        complement(queries, set);
-        break;
+    case EX_ITEM_AX:
+    case EX_ITEM_EG:
+    case EX_ITEM_AG: is_fine = opposite(queries, item->kind, a, side, set); break;
     case EX_ITEM_TRUE:
     case EX_ITEM_DEAD:
     case EX_ITEM_INITIAL:
@@ -211,8 +278,20 @@ bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
         is_fine = false; /* explore_query.c knows them */
         break;
     }
-    item->set = is_fine ? set : NULL;
-    return is_fine;
+    return is_fine ? set : NULL;
+}
+
+bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
+{
+    const ex_item_t *const a = &queries->item[item->a];
+    const ex_item_t *const b = &queries->item[item->b];
+    const bool is_of_nodes = item->kind <= EX_ITEM_OR;
+    const bool is_exact = queries->run->graph->is_whole || (is_of_nodes && (a->set == a->may) && (b->set == b->may));
+    uint64_t *const set = work_out(queries, item, SURELY);
+    uint64_t *const may = (is_exact || (set == NULL)) ? set : work_out(queries, item, MAYBE);
+    item->set = (may != NULL) ? set : NULL;
+    item->may = may;
+    return may != NULL;
 }
 
 /* --- runs that show it -------------------------------------------------------------------------------------------- */
@@ -224,12 +303,12 @@ typedef struct claim {
     bool is_shown; /* there is nothing more to say */
 } claim_t;
 
-/* The complement of a set of an item, to be freed. */
+/* The nodes that are surely not in an item, to be freed. */
 static uint64_t *without(const ex_queries_t *queries, uint32_t item)
 {
     uint64_t *const set = ex_set(queries);
     if (set != NULL) {
-        copy(queries, set, queries->item[item].set);
+        copy(queries, set, queries->item[item].may);
         complement(queries, set);
     }
     return set;
@@ -255,7 +334,7 @@ static bool show_step(ex_queries_t *queries, claim_t *claim, const ex_item_t *it
     const uint32_t a = item->a;
     for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
         const bool is_of_it = (item->kind != EX_ITEM_EXA) || (graph->label[arc] == item->number);
-        if (is_of_it && (ex_is_in(queries, a, graph->target[arc]) == holds)) {
+        if (is_of_it && ex_is_known(queries, a, graph->target[arc], holds)) {
             ex_path_step(path, graph->label[arc], graph->target[arc]);
             *claim = (claim_t){ .item = a, .holds = holds };
             return !path->is_failed;
@@ -285,7 +364,7 @@ static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t
     uint64_t *const neither = ex_set(queries);
     bool is_found = false;
     if ((before != NULL) && (neither != NULL)) {
-        copy(queries, neither, queries->item[item->a].set);
+        copy(queries, neither, queries->item[item->a].may);
         complement(queries, neither);
         combine(queries, neither, neither, before, true);
         is_found = ex_path_search(queries, before, neither, path);
@@ -311,7 +390,7 @@ static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *path)
             *claim = (claim_t){ .item = item->b, .holds = holds };
         } else {
             *claim =
-                (claim_t){ .item = (ex_is_in(queries, item->a, node) == holds) ? item->a : item->b, .holds = holds };
+                (claim_t){ .item = ex_is_known(queries, item->a, node, holds) ? item->a : item->b, .holds = holds };
         }
         return true;
     case EX_ITEM_EX:

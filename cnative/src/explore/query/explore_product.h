@@ -51,7 +51,7 @@ static inline ex_cursor_t ex_first_of(const ex_product_t *p, uint32_t state)
 static inline bool ex_is_readable(const ex_product_t *p, const ex_edge_t *edge, uint32_t node)
 {
     for (uint32_t i = 0U; i < edge->literals; i++) {
-        if (ex_is_in(p->queries, edge->literal[i].item, node) != edge->literal[i].is_positive) {
+        if (!ex_is_known(p->queries, edge->literal[i].item, node, edge->literal[i].is_positive)) {
             return false;
         }
     }

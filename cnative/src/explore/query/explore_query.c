@@ -161,11 +161,10 @@ static bool is_known_in_part(const ex_queries_t *queries, uint32_t number)
     }
 }
 
-/* Whether a run in a part of the graph may decide a question: one that violates a formula or a response, or two runs
- * that show that an order matters. Whether a run is fair is not known there. */
+/* Whether a part of the graph may decide a question: a run that violates a formula or a response, two runs that show
+ * that an order matters, or what a formula of CTL says whatever is missing. Whether a run is fair is not known there. */
 static bool is_of_part(const ex_queries_t *queries, const ex_question_t *question)
 {
-    const ex_automaton_t *const automaton = question->automaton;
     const ex_event_t *const first = &question->first;
     const ex_event_t *const second = &question->second;
     if ((question->kind == EX_ASK_FIRINGS) || (question->kind == EX_ASK_TIME)) {
@@ -175,13 +174,8 @@ static bool is_of_part(const ex_queries_t *queries, const ex_question_t *questio
     if (question->kind == EX_ASK_CONFLUENT) {
         return !question->is_of_orders;
     }
-    bool is_fine = (question->kind == EX_ASK_LASSO) && (automaton->fair_count == 0U);
-    for (uint32_t i = 0U; is_fine && (i < automaton->edges); i++) {
-        for (uint32_t k = 0U; is_fine && (k < automaton->edge[i].literals); k++) {
-            is_fine = is_known_in_part(queries, automaton->edge[i].literal[k].item);
-        }
-    }
-    return is_fine;
+    return (question->kind == EX_ASK_INITIALLY)
+           || ((question->kind == EX_ASK_LASSO) && (question->automaton->fair_count == 0U));
 }
 
 /* Marks the items on which the questions rest that can be answered. */
@@ -237,6 +231,7 @@ static bool find_leaves(ex_queries_t *queries)
     for (uint32_t i = 0U; (leaves.item != NULL) && is_fine && (i < queries->items); i++) {
         if (queries->item[i].is_needed && is_leaf(&queries->item[i])) {
             queries->item[i].set = ex_set(queries);
+            queries->item[i].may = queries->item[i].set;
             is_fine = queries->item[i].set != NULL;
             leaves.item[leaves.count] = i;
             leaves.count += 1U;
@@ -248,6 +243,20 @@ static bool find_leaves(ex_queries_t *queries)
     }
     free(leaves.item);
     return is_fine;
+}
+
+/* The same set, and the nodes of a part of which arcs are missing. NULL: no memory. */
+static uint64_t *with_cut(const ex_queries_t *queries, uint64_t *set)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    if ((set == NULL) || (graph->cut == NULL)) {
+        return set;
+    }
+    uint64_t *const may = ex_set(queries);
+    for (uint64_t i = 0U; (may != NULL) && (i < ex_set_words(graph)); i++) {
+        may[i] = set[i] | graph->cut[i];
+    }
+    return may;
 }
 
 /* Where transitions are enabled, in one pass over the arcs. Items of the same transition share a set. */
@@ -276,6 +285,13 @@ static bool find_enabled(ex_queries_t *queries)
             }
         }
     }
+    for (uint32_t i = 0U; i < queries->items; i++) {
+        ex_item_t *const item = &queries->item[i];
+        if (item->is_needed && (item->kind == EX_ITEM_ENABLED)) {
+            item->may = is_fine ? with_cut(queries, item->set) : NULL;
+            item->set = (item->may != NULL) ? item->set : NULL;
+        }
+    }
     free(set);
     return is_fine;
 }
@@ -284,6 +300,7 @@ static bool find_simple(ex_queries_t *queries, ex_item_t *item)
 {
     const ex_graph_t *const graph = queries->run->graph;
     item->set = ex_set(queries);
+    item->may = item->set;
     if (item->set == NULL) {
         return false;
     }
@@ -401,6 +418,10 @@ static void answer_invariant(ex_queries_t *queries, ex_question_t *question)
 static void answer_initially(ex_queries_t *queries, ex_question_t *question)
 {
     const bool holds = ex_is_in(queries, question->a, 0U);
+    if (!holds && !ex_is_known(queries, question->a, 0U, false)) {
+        ex_doubt(queries->run, question); /* of a part */
+        return;
+    }
     question->answer = holds ? EX_YES : EX_NO;
     if (ex_path_begin(&question->path, 0U)) {
         question->path.is_failed = !ex_ctl_explain(queries, question->a, holds, &question->path);
@@ -536,12 +557,13 @@ static void revive(ex_run_t *run)
     atomic_store(&run->is_stopping, false);
 }
 
-/* A run of a part of the graph that was found to violate a question; else the question stays open. */
+/* A run of a part of the graph that was found to violate a question, or a formula of CTL that is known; else the
+ * question stays open. */
 static void answer_in_part(ex_queries_t *queries, ex_question_t *question)
 {
     const ex_answer_t violated = (question->kind == EX_ASK_LASSO) ? EX_YES : EX_NO;
     answer(queries, question);
-    if (question->answer != violated) {
+    if ((question->answer != violated) && (question->kind != EX_ASK_INITIALLY)) {
         question->path.is_failed = true;
         question->node = EX_NO_NODE;
         question->value_kind = EX_NO_VALUE;

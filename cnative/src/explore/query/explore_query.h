@@ -48,7 +48,8 @@ typedef struct ex_item {
     bool is_nameless;   /* made of EX_ITEM_DEAD alone: no colour has a name in it */
     bool is_needed;
     bool is_early;      /* looked at during the exploration */
-    uint64_t *set;      /* a bit for each node; NULL: not known */
+    uint64_t *set;      /* a bit for each node; NULL: not known. Of a part: those that are surely in it */
+    uint64_t *may;      /* of a part: those that may be in it; else, and where that is the same, `set` */
     uint64_t most;      /* EX_ITEM_WITHIN: tokens */
     uint32_t raised_at; /* the first node in which a predicate of it raised an exception; EX_NO_NODE: none */
     char raised[EX_RAISED_SIZE];
@@ -150,10 +151,14 @@ typedef struct ex_queries {
     ex_item_t *item;
     uint32_t questions;
     ex_question_t *question;
-    bool asks_orders;      /* there are questions that are answered only where programs never choose */
-    bool is_part;          /* the graph is a part of the whole one: a run in it is certain, that there is none is not */
-    bool needs_enabled;    /* what is enabled in a state may decide a question */
-    _Atomic uint32_t open; /* questions that no state has decided; those that no single state can decide count */
+    bool asks_orders;   /* there are questions that are answered only where programs never choose */
+    bool is_part;       /* the graph is a part of the whole one: a run in it is certain, that there is none is not */
+    bool needs_enabled; /* what is enabled in a state may decide a question */
+    bool has_avoid;     /* states of item `avoid` are not expanded */
+    bool has_seek;      /* the exploration ends at a dead state of item `seek` */
+    uint32_t avoid;
+    uint32_t seek;
+    _Atomic uint32_t open;       /* questions that no state has decided; those that no single state can decide count */
     _Atomic uint32_t open_early; /* without those */
     pthread_mutex_t lock;
     uint32_t *owner;            /* by transition; 0: the supervisor's. NULL: not told */
@@ -166,6 +171,12 @@ typedef struct ex_queries {
 static inline bool ex_is_in(const ex_queries_t *queries, uint32_t item, uint32_t node)
 {
     return EX_BIT(queries->item[item].set, node) != 0U;
+}
+
+/* Whether a node is known to be in a needed item, or is known not to be. */
+static inline bool ex_is_known(const ex_queries_t *queries, uint32_t item, uint32_t node, bool is_positive)
+{
+    return is_positive ? ex_is_in(queries, item, node) : (EX_BIT(queries->item[item].may, node) == 0U);
 }
 
 static inline uint64_t ex_set_words(const ex_graph_t *graph)
@@ -214,7 +225,7 @@ void ex_queries_json(const ex_run_t *run, bool is_early, FILE *out);
 
 /* --- explore_ctl.c --- */
 
-/* The set of an item whose operands' sets are there. False: no memory, or told to stop. */
+/* The set of an item whose operands' sets are there; of a part both sets. False: no memory, or told to stop. */
 bool ex_ctl(ex_queries_t *queries, ex_item_t *item);
 /* As far as one way shows it, why `item` holds at a node (or does not): added to a way that ends in this node. */
 bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *path);

@@ -53,6 +53,12 @@ bool ex_early_make(ex_worker_t *worker)
                 (void)atomic_fetch_add(&queries->open_early, 1U);
             }
         }
+        if (queries->has_avoid) {
+            queries->item[queries->avoid].is_early = true;
+        }
+        if (queries->has_seek) {
+            queries->item[queries->seek].is_early = true;
+        }
         for (uint32_t i = queries->items; i > 0U; i--) {
             const ex_item_t *const item = &queries->item[i - 1U];
             if (item->is_early && (item->kind >= EX_ITEM_NOT)) {
@@ -131,14 +137,29 @@ static bool is_decided(const ex_worker_t *worker, const ex_question_t *question)
     return !worker->early->holds[question->a] || worker->early->raised[question->a];
 }
 
+bool ex_early_avoids(ex_worker_t *worker, const ex_key_t *key)
+{
+    const ex_queries_t *const queries = worker->run->queries;
+    if (!queries->has_avoid || !ex_load(worker, key)) {
+        return false;
+    }
+    look(worker, is_same(key, &worker->run->initial), EX_SOME);
+    return worker->early->holds[queries->avoid] && !worker->early->raised[queries->avoid];
+}
+
 void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
 {
     ex_run_t *const run = worker->run;
     ex_queries_t *const queries = run->queries;
-    if ((atomic_load_explicit(&queries->open_early, memory_order_relaxed) == 0U) || !load(worker, key)) {
+    const bool is_sought = queries->has_seek && (found == EX_DEAD);
+    const bool is_open = atomic_load_explicit(&queries->open_early, memory_order_relaxed) > 0U;
+    if ((!is_open && !is_sought) || !load(worker, key)) {
         return;
     }
     look(worker, is_same(key, &run->initial), found);
+    if (is_sought && worker->early->holds[queries->seek] && !worker->early->raised[queries->seek]) {
+        ex_stop(run, EX_STATES);
+    }
     for (uint32_t i = 0U; (i < queries->questions) && !worker->failed; i++) {
         ex_question_t *const question = &queries->question[i];
         if (!is_early(queries, question) || !is_decided(worker, question) || atomic_load(&question->is_decided)) {

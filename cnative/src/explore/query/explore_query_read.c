@@ -34,6 +34,8 @@
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
  *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
+ *     avoid 3                         states of item 3 are not expanded: what is not known of them is not known at all
+ *     seek 4                          the exploration ends, as at a limit, where a dead state of item 4 is found
  *     orders                          what is asked from here on is about all orders in which `first` transitions can
  *                                     occur: it is answered only if in no state there is more than one to choose from
  */
@@ -550,6 +552,39 @@ static bool is_kind(const char *word)
            || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
 }
 
+/* `avoid 3`, `seek 3`: a search for what shows something, of items about one state. */
+static bool read_search(ex_reader_t *r)
+{
+    ex_queries_t *const queries = r->queries;
+    const bool is_avoid = strcmp(r->word[0], "avoid") == 0;
+    uint32_t item = 0U;
+    if (r->words != 2U) {
+        return ex_complain(r, "wrong number of operands", r->word[0]);
+    }
+    if (!ex_read_item(r, r->word[1], &item)) {
+        return false;
+    }
+    if (!queries->item[item].is_local) {
+        return ex_complain(r, "it is not about one state", r->word[1]);
+    }
+    if (!queries->run->options.is_depth_first) {
+        return ex_complain(r, "the search is not depth first", r->word[0]);
+    }
+    queries->has_avoid = queries->has_avoid || is_avoid;
+    queries->has_seek = queries->has_seek || !is_avoid;
+    if (is_avoid) {
+        queries->avoid = item;
+    } else {
+        queries->seek = item;
+    }
+    return true;
+}
+
+static bool is_search(const char *word)
+{
+    return (strcmp(word, "avoid") == 0) || (strcmp(word, "seek") == 0);
+}
+
 static bool read_lines(ex_reader_t *r)
 {
     bool is_fine = true;
@@ -571,6 +606,8 @@ static bool read_lines(ex_reader_t *r)
             is_fine = read_instant(r);
         } else if (is_kind(r->word[0])) {
             is_fine = read_kind(r);
+        } else if (is_search(r->word[0])) {
+            is_fine = read_search(r);
         } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {
             is_fine =
                 (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[0]);

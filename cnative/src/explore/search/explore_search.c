@@ -75,6 +75,30 @@ bool ex_is_near_limit(const ex_run_t *run)
     return (run->options.max_states - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads);
 }
 
+static void exchange(ex_search_t *own, uint32_t i, uint32_t k)
+{
+    const ex_pending_t other = own->batch[i];
+    own->batch[i] = own->batch[k];
+    own->batch[k] = other;
+}
+
+/* Depth first, what is inserted last is expanded first: the other way round, or in an order that chance decides. */
+static void shuffle(ex_search_t *own, uint64_t how)
+{
+    if (how == 1U) {
+        for (uint32_t i = 0U; i < (own->pending / 2U); i++) {
+            exchange(own, i, own->pending - 1U - i);
+        }
+        return;
+    }
+    for (uint32_t i = own->pending; i > 1U; i--) {
+        own->random ^= own->random << 13U;
+        own->random ^= own->random >> 7U;
+        own->random ^= own->random << 17U;
+        exchange(own, i - 1U, (uint32_t)(own->random % i));
+    }
+}
+
 /* Inserts what has been collected. False when the run stops. */
 static bool flush(ex_worker_t *worker)
 {
@@ -85,6 +109,9 @@ static bool flush(ex_worker_t *worker)
     bool goes_on = true;
     if (own->words != NULL) {
         return ex_words_flush(worker);
+    }
+    if (own->random != 0U) {
+        shuffle(own, run->options.shuffle);
     }
     if (!ex_batch_begin(worker)) {
         return false;
@@ -196,6 +223,11 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 static bool expand(ex_worker_t *worker, const ex_key_t *key)
 {
     ex_found_t found;
+    if ((worker->early != NULL) && ex_early_avoids(worker, key)) {
+        atomic_store(&worker->run->has_avoided, true);
+        ex_bounds_see(worker);
+        return true;
+    }
     if (worker->search->words != NULL) {
         found = ex_words_successors(worker, key->low);
     } else if (ex_flat_is_ready(worker)) {
@@ -547,6 +579,8 @@ bool ex_explore(ex_run_t *run)
         }
         run->worker[i].search->level = search;
         run->worker[i].search->is_exact = ex_is_exact(run);
+        /* Numbers that are near each other make very different ones. */
+        run->worker[i].search->random = run->options.is_depth_first ? (run->options.shuffle * 0x9e3779b97f4a7c15U) : 0U;
         if (!ex_words_make(&run->worker[i]) || !ex_local_make(&run->worker[i]) || !ex_flat_make(&run->worker[i])) {
             ex_stop(run, EX_MEMORY);
             return false;
@@ -564,6 +598,9 @@ bool ex_explore(ex_run_t *run)
     } else if (run->options.is_hashed) {
         const double nodes = (double)run->nodes;
         run->omission_probability = -expm1(-(nodes * nodes) / 36893488147419103232.0); /* pairs that share 64 bits */
+    }
+    if (atomic_load(&run->has_avoided) && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
+        ex_stop(run, EX_STATES); /* what comes after them was not seen */
     }
     run->seconds = ex_clock() - started;
     run->cpu_seconds = cpu_clock() - cpu_started;

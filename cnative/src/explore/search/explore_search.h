@@ -55,6 +55,7 @@ typedef struct ex_search {
     ex_key_t recent[EX_RECENT]; /* keys that are in the store, or in the batch; zero: none, or the key that is zero */
     ex_pending_t batch[EX_BATCH];
     uint32_t pending;
+    uint64_t random; /* decides the order of successors; 0: nothing does */
     bool is_exact;
     struct ex_words *words; /* of explore_words.c; NULL: states are not made that way */
     struct ex_flat *flat;   /* of explore_flat.c; the same */

@@ -29,7 +29,7 @@ from pn2code.geometry.placing.search import Candidate, Found, Search, Wish, unli
 from pn2code.geometry.reach_look import told
 from pn2code.geometry.reach_map import Task
 from pn2code.geometry.situations import Situations
-from pn2code.geometry.words import numbers, reason
+from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.verdict.opened import OpenNet
@@ -100,6 +100,7 @@ class Placed:
         missed: what cannot be reached, if nothing was found.
         open: why the arms may have more to do; "": they have not.
         unfinished: what there was no time for; "": nothing.
+        regardless: what cannot be done wherever the arms stand that may be moved; "": nothing is known of that kind.
     """
 
     config: CellConfig
@@ -111,6 +112,7 @@ class Placed:
     missed: tuple[Missed, ...]
     open: str = ""
     unfinished: str = ""
+    regardless: str = ""
 
     @property
     def chosen(self) -> Tried | None:
@@ -150,8 +152,9 @@ def look(
     placing = _Placing(graph, cell, free, request, options, deadline)
     found, tried, missed = placing.run()
     return Placed(
-        config, name, cell, free, found, tuple(tried), missed, placing.open, placing.unfinished
-    )
+        config, name, cell, free, found, tuple(tried), missed, placing.open, placing.unfinished,
+        placing.regardless,
+    )  # fmt: skip
 
 
 class _Placing:
@@ -170,7 +173,7 @@ class _Placing:
         self.deadline, self.unfinished = deadline, ""
         self.request, self.options = request, options
         self.robots = tuple(dict.fromkeys(f.robot for f in free))
-        self.open = ""
+        self.open = self.regardless = ""
 
     def run(self) -> tuple[Found, list[Tried], tuple[Missed, ...]]:
         """The last round's answer."""
@@ -178,6 +181,11 @@ class _Placing:
             tasks, plans, _ = self._tasks(self.cell)
         for round_ in range(_ROUNDS):
             judge = Judge(self.cell, tasks, plans, self.free)
+            if self.regardless:
+                try:
+                    return self._searching(judge).none(), [], ()
+                finally:
+                    judge.close()
             try:
                 found = self._search(judge)
                 missed = () if found.ranked else self._missed(judge, found)
@@ -211,13 +219,28 @@ class _Placing:
         situations.explore()
         self.open = reason(situations.why)
         legs = situations.doing.planner.legs
+        if not self.regardless:
+            self.regardless = self._regardless(situations)
         tasks = {r: Task.of(situations, cell.robot(r)) for r in self.robots}
         plans = {r: Plan.of(legs, r) for r in self.robots}
         return tasks, plans, all(leg.fault is None for leg in legs)
 
-    def _search(self, judge: Judge) -> Found:
+    def _regardless(self, found: Situations) -> str:
+        """A move of an arm that is not placed anew and that it can do from nowhere; "": there is none.
+
+        Where it goes is its own affair. With no parts, and no sensors that see, an arm comes to such a move in each
+        placing in which those that are placed can do all of theirs.
+        """
+        if self.cell.parts or found.sees:
+            return ""
+        for leg in found.doing.planner.legs:
+            if leg.fault is not None and leg.robot not in self.robots:
+                return f"{leg.robot}, {words(leg.command)}: {leg.fault.message}"
+        return ""
+
+    def _searching(self, judge: Judge) -> Search:
         r = self.request
-        search = Search(
+        return Search(
             judge,
             r.wish,
             seed=r.seed,
@@ -225,6 +248,9 @@ class _Placing:
             stage=self.options.stage,
             deadline=self.deadline.share(_SEARCHING),
         )
+
+    def _search(self, judge: Judge) -> Found:
+        search = self._searching(judge)
         found = search.run()
         if search.is_unfinished:
             self.unfinished = "the search was broken off"

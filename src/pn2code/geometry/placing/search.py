@@ -200,6 +200,11 @@ class Search:
         nearest = min(seen, key=lambda c: (-c.reach, c.badness, c.values))
         return Found(here, tuple(meeting), nearest, len(seen))
 
+    def none(self) -> Found:
+        """Nothing but how it stands, where searching is of no use."""
+        here = self._here(np.array([[f.here for f in self.judge.free]]))
+        return Found(here, (), here, 1)
+
     def _here(self, values: Array) -> Candidate:
         """As the arms stand: walked, whether it is as wished or not."""
         here = self._candidates(values)[0]

@@ -82,6 +82,13 @@ fun several (getc, stream, 0, out) = (rev out, stream)
   | several (getc, stream, n, out) =
     case getc stream of SOME (c, rest) => several (getc, rest, n - 1, c :: out) | NONE => (rev out, stream)
 
+(* What follows a gap `\   \` of which the backslash has been read. *)
+fun beyond_gap (getc, stream) =
+    case getc stream of
+        SOME (#"\\", rest) => SOME rest
+      | SOME (c, rest) => if Char.isSpace c then beyond_gap (getc, rest) else NONE
+      | NONE => NONE
+
 fun Char_scan getc stream =
     case getc stream of
         NONE => NONE
@@ -100,6 +107,8 @@ fun Char_scan getc stream =
              if Char.isDigit c then
                  let val (digits, next) = several (getc, next, 2, nil)
                  in case code (0, 10, c :: digits, 3) of SOME c => SOME (c, next) | NONE => NONE end
+             else if Char.isSpace c then
+                 case beyond_gap (getc, next) of SOME rest => Char_scan getc rest | NONE => NONE
              else (case control c of SOME c => SOME (c, next) | NONE => NONE))
       | SOME (c, stream) => if Char_isPrint c then SOME (c, stream) else NONE
 

@@ -376,6 +376,7 @@ class Program:
         datatypes: every data type of the program by TCon name, built-in ones included (bool, list, option, order).
         globals: top-level symbols by name (the last declaration of a name), for `--set` and reports.
         int_bits: width of `int`: 31 as in CPN Tools, or 64; beyond it `Overflow` is raised.
+        used: the files of declarations that were read (`use "functions.sml"`), each with the SHA-256 of its content.
     """
 
     declarations: tuple[Dec, ...]
@@ -384,3 +385,4 @@ class Program:
     datatypes: dict[str, DatatypeDec]
     globals: dict[str, Symbol]
     int_bits: int = 31
+    used: tuple[tuple[str, str], ...] = ()

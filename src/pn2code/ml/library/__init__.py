@@ -39,6 +39,43 @@ def _byte_arrays() -> str:
     return text
 
 
+def _words(name: str, big: bool) -> str:
+    """The declaration of words of 32 bits in vectors and arrays of bytes."""
+    order = "rev bytes" if big else "bytes"
+    return f"""structure {name} = struct
+    val bytesPerElem = 4
+    val isBigEndian = {str(big).lower()}
+    fun word bytes =
+        List.foldr (fn (byte, sum) => Word32.+ (Word32.* (sum, 0w256), Word32.fromInt (Word8.toInt byte))) 0w0 ({order})
+    fun read (size, byte) i =
+        if i < 0 orelse i > size div 4 - 1 then raise Subscript
+        else word (List.tabulate (4, fn k => byte (4 * i + k)))
+    fun subVec (bytes, i) = read (Word8Vector.length bytes, fn k => Word8Vector.sub (bytes, k)) i
+    fun subArr (bytes, i) = read (Word8Array.length bytes, fn k => Word8Array.sub (bytes, k)) i
+    fun subVecX at = subVec at
+    fun subArrX at = subArr at
+    fun update (bytes, i, value) =
+        if i < 0 orelse i > Word8Array.length bytes div 4 - 1 then raise Subscript
+        else
+            let fun parts (0, _) = nil
+                  | parts (n, rest) =
+                    Word8.fromInt (Word32.toInt (Word32.mod (rest, 0w256))) :: parts (n - 1, Word32.div (rest, 0w256))
+                fun ordered bytes = {order}
+                val made = Word8Vector.fromList (ordered (parts (4, value)))
+            in Word8Array.copyVec {{src = made, dst = bytes, di = 4 * i}} end
+end"""
+
+
+def _reals(kind: str) -> str:
+    """The declaration of vectors or arrays of reals."""
+    whole = kind.lower()
+    vectors = "" if kind == "Vector" else "    type vector = real Vector.vector\n"
+    return (
+        f"structure Real64{kind} = struct\n    open {kind}\n    type elem = real\n"
+        f"    type {whole} = real {kind}.{whole}\n{vectors}end"
+    )
+
+
 def _table(name: str, key: str, hashed: str, same: str = "op =") -> str:
     """The declaration of hash tables with keys of one type."""
     return (
@@ -79,6 +116,10 @@ MADE: dict[str, str] = {
     "CharVectorSlice": _slices_of("CharVector", "string", "char"),
     "Word8VectorSlice": _slices_of("Word8Vector", "Word8Vector.vector", "Word8.word"),
     "Word8ArraySlice": _byte_arrays(),
+    "PackWord32Big": _words("PackWord32Big", True),
+    "PackWord32Little": _words("PackWord32Little", False),
+    "Real64Vector": _reals("Vector"),
+    "Real64Array": _reals("Array"),
     "IntHashTable": _table("IntHashTable", "int", "Word.fromInt"),
     "WordHashTable": _table("WordHashTable", "word", "fn (key : word) => key"),
     "AtomTable": _table("AtomTable", "Atom.atom", "Atom.hash", "Atom.sameAtom"),
@@ -106,7 +147,8 @@ def _more() -> dict[str, re.Pattern[str]]:
     """Name of a structure that has more -> where a text mentions it."""
     found = {}
     for path in sorted((FOLDER / "more").glob("*.sml")):
-        own = re.findall(r"^    fun (\w+)", path.read_text(encoding="ascii"), re.MULTILINE)
+        text = path.read_text(encoding="ascii")
+        own = re.findall(r"^    (?:fun|structure) (\w+)", text, re.MULTILINE)
         members = "|".join(sorted(set(own), key=len, reverse=True))
         found[path.stem] = re.compile(rf"\b{path.stem}\s*\.\s*(?:{members})\b(?!')")
     return found

@@ -329,7 +329,7 @@ OS.Process.exit : OS.Process.status -> 'a ; ends the run
 OS.Process.terminate : OS.Process.status -> 'a ; ends the run
 OS.Process.atExit : (unit -> unit) -> unit ; for its effect at the end
 
-== a run is one simulation; start several from outside
+== a run is one simulation; `simulate --replications N` makes several
 CPN'Replications.nreplications : int -> unit ; so many simulations
 
 == the clock of the computer is not read, so that runs can be repeated

@@ -154,7 +154,7 @@ class _Resolver:
                             "a record pattern lists `label = pattern` or variables", part.span
                         )
                 return replace(p, fields=tuple((n, self.pat(x)) for n, x in p.fields))
-            case s.ListPat():
+            case s.ListPat() | s.VectorPat():
                 return replace(p, items=tuple(self.pat(x) for x in p.items))
             case s.OrPat():
                 return replace(p, alternatives=tuple(self.pat(x) for x in p.alternatives))

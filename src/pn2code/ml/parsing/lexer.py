@@ -199,6 +199,11 @@ class _Lexer:
             c = text[at]
             if c == '"':
                 break
+            if c < " ":
+                return self._error(
+                    at, at + 1, "a string holds a tab or another character that is not printed",
+                    "write `\\t` for a tab",
+                )  # fmt: skip
             if c != "\\":
                 # Characters are bytes: what Latin-1 does not have is several, those of UTF-8.
                 out.append(c if c <= "\xff" else c.encode().decode("latin-1"))

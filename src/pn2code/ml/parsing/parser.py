@@ -252,14 +252,6 @@ def _report(
 ) -> None:
     token = problem.token
     at_end = token is None
-    if token is not None and source.text[token.start : token.start + 2] == "#[":
-        d.error(
-            codes.UNSUPPORTED_ML,
-            "a vector in a pattern is not supported",
-            source.span(token.start, token.start + 2),
-            hint="give the vector a name, and use `Vector.length v` and `Vector.sub (v, i)`",
-        )
-        return
     kind, word = ("$END", "") if token is None else (token.kind, token.text)
     if token is None:
         end = tokens[-1].end if tokens else 0

@@ -95,6 +95,7 @@ from pn2code.ml.parsing.syntax_patterns import (
     Pat,
     RecordPat,
     TypedPat,
+    VectorPat,
     WildPat,
 )
 from pn2code.ml.parsing.syntax_types import (
@@ -118,7 +119,7 @@ __all__ = [
     "RecordExp", "RecordPat", "RecordTy", "Rule", "SealedStr", "SelectorExp", "SequenceExp", "SharingSpec", "Sig",
     "SigSig", "SignatureDec", "Spec", "Str", "StructStr", "StructureBinding", "StructureDec", "StructureSpec",
     "Ty", "TypeBinding", "TypeDec", "TypeSpec", "TypedExp", "TypedPat", "ValBinding", "ValDec", "ValSpec",
-    "VarTy", "VectorExp", "WhereSig", "WhileExp", "WildPat", "is_node",
+    "VarTy", "VectorExp", "VectorPat", "WhereSig", "WhileExp", "WildPat", "is_node",
 ]  # fmt: skip
 
 _HOMES = frozenset(kind.__module__ for kind in (VarTy, WildPat, LitExp, ValDec, StructStr))

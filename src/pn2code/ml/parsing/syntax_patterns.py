@@ -50,6 +50,14 @@ class ListPat:
 
 
 @frozen
+class VectorPat:
+    """`#[p1, ..., pn]`."""
+
+    items: tuple[Pat, ...]
+    span: Span
+
+
+@frozen
 class ConPat:
     """A constructor applied to a pattern (`SOME p`, `p :: q`)."""
 
@@ -94,5 +102,5 @@ class FlatPat:
 
 
 Pat = (
-    WildPat | LitPat | NamePat | RecordPat | ListPat | ConPat | TypedPat | AsPat | OrPat | FlatPat
+    WildPat | LitPat | NamePat | RecordPat | ListPat | VectorPat | ConPat | TypedPat | AsPat | OrPat | FlatPat
 )  # fmt: skip

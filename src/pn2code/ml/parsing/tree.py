@@ -257,6 +257,9 @@ class TreeBuilder:
     def list_pat(self, children: Children) -> s.ListPat:
         return s.ListPat(self._nodes(children), self._span(children))
 
+    def vector_pat(self, children: Children) -> s.VectorPat:
+        return s.VectorPat(self._nodes(children), self._span(children))
+
     def record_pat(self, children: Children) -> s.RecordPat:
         parts = self._nodes(children)
         fields = tuple((p.items[0], p.items[1]) for p in parts if isinstance(p, Group))

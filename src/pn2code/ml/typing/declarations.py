@@ -314,11 +314,14 @@ class Declarations:
             t = IFun(argument, t)
         self._ctx.unify(binding.type, t, f.name_span, f"function `{f.name}`")
         rules: list[Callable[[], tuple[list[core.Pat], core.Exp, Span, tuple[Deref, ...]]]] = []
+        seen: dict[int, set[str]] = {}
         for clause, written in self._choices(f):
             own = Bindings()
             patterns = [
                 self._patterns.check(p, a, own) for p, a in zip(written, arguments, strict=True)
             ]
+            names = seen.setdefault(id(clause), set(own))
+            self._patterns.same_names(names, own, clause.patterns[0].span)
             if clause.result is not None:
                 annotated = self._annotations.type(clause.result)
                 self._ctx.unify(annotated, result, clause.result.span, f"result of `{f.name}`")

@@ -25,10 +25,10 @@ GNUPlot GenModIdMap GenericSock Graph Hash31ToHash31 Hash32ToHash31 Hash62ToHash
 HashIntToHash31 HashTableRep HashWord8Vector I IntInfKey IntKey JavaExecute LargeArray LargeDynamicArray
 LargeHashTable Lazy MLParser MaxMemory MemoryLimit MemoryLimit2 MessagingLayer MinimalCompiler ModuleId
 ModuleUtil Modules NetDB NetProtDB NetServDB O'S OSDep PLTLSyntax PPType PQRS PTNetHashFunction
-PTNetHashFunction2 PackReal64Big PackReal64Little PackWord16Big PackWord16Little PackWord32Big
-PackWord32Little PersMap PersStamps PickMod PickleSymPid Precedence PrettyPrint PrettyPrintNew PrimOpId
-PrintHooks PrintUtil ProbLibBasics ProbLibDist Profiling R RS RSPrio RandomQueue RandomValues Real64Array
-Real64ArraySlice Real64Vector Real64VectorSlice RealArray RealArraySlice RealNumber RealVector RealVectorSlice
+PTNetHashFunction2 PackReal64Big PackReal64Little PackWord16Big PackWord16Little
+PersMap PersStamps PickMod PickleSymPid Precedence PrettyPrint PrettyPrintNew PrimOpId
+PrintHooks PrintUtil ProbLibBasics ProbLibDist Profiling R RS RSPrio RandomQueue RandomValues
+Real64ArraySlice Real64VectorSlice RealArray RealArraySlice RealNumber RealVector RealVectorSlice
 Ref Regression Rehash S SML90 SMLNJVersion SQLDump Signals SimpleURef SmlFile Source SourceMap Stack Stamps
 StandardArray StaticEnv Stats StringKey SymPath Symbol SymbolHashTable SymbolicEnv SysWord TestTools Text
 TextPrimIO Types TypesUtil UTF8 Unify UnixSignals UnixSock UnpickMod UnpickleSymPid Unsafe VarCon
@@ -43,13 +43,12 @@ CPN'underlineSpaces CPN'use Compile ConfidenceIntervalExn DupConnNameExn Element
 IntInfToRealExn NotValidDirExn RealToIntInfExn UnsupportedArch all_expr beta_pert canreceive col delay
 dynArray gen_mkstr_ms get_ran hashId hashInt hashIntList hashString illegal_msg_ms import importE input_ms
 input_tms mkstr mkstr_tms model_time name null_str ogpath output_ms output_tms problibrandom rcsid ready reset
-rmipath sort_int_list sort_tms start_time tcf tlegal tleq tlt tod tsub
+rmipath sort_int_list sort_tms start_time tlegal tleq tlt tod tsub
 """
 _MEMBERS = """
 BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flushOut getBufferMode getPosOut
 BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
 BinIO.StreamIO : setBufferMode setPosOut
-Byte : packString unpackString unpackStringVec
 ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
@@ -116,7 +115,6 @@ SMLofNJ.Weak : strong'
 Socket : NO_RECVS NO_RECVS_OR_SENDS NO_SENDS
 Socket.AF : fromString list toString
 Socket.SOCK : dgram fromString list stream toString
-String : scan
 TMS : delay input_tms mkstr_tms output_tms sort_tms tcf tlegal tleq tlt tsub
 TMS.ModelTime : add cmp col fromInt fromIntInf fromString leq lt maketime mkstr model_time mult name null
 TMS.ModelTime : null_str ready start_time sub time toReal toString

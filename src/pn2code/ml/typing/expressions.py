@@ -467,9 +467,12 @@ class Expressions:
                     rule.pattern.span,
                 )
                 continue
-            for (written,) in choices:
+            names = set[str]()
+            for choice, (written,) in enumerate(choices):
                 bindings = Bindings()
                 pattern = self._patterns.check(written, argument, bindings)
+                names = names if choice else set(bindings)
+                self._patterns.same_names(names, bindings, rule.pattern.span)
                 with self._ctx.block() as scope:
                     scope.values.update(bindings)
                     name = what if known or len(rules) == 1 else f"result of rule {i}"

@@ -3,8 +3,8 @@
 `coverage(patterns)` walks the decision tree of a match. For `fun f (Ack _) = 1 | f (Ack 3) = 2` it says that
 rule 2 is never reached and that `Nil` is not covered.
 
-`assemble` turns rules with `ref p` patterns, which core does not have, into rules without: the cell gets a hidden
-name, its contents are matched in the body, and where they do not match, the rules that follow are tried.
+`assemble` turns rules with patterns `ref p` and `#[p, q]`, which core does not have, into rules without: the cell gets
+a hidden name, its contents are matched in the body, and where they do not match, the rules that follow are tried.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import EXN, UNIT, TCon, TFun, Type
+from pn2code.ml.core.types import EXN, UNIT, TCon, TFun, Type, tuple_of
+from pn2code.ml.library.datatypes import CONS, NIL
 from pn2code.ml.library.exceptions import EXCEPTIONS
 from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.inference import to_type
@@ -387,5 +388,21 @@ def _opened(ctx: Context, built: BuiltRule) -> core.Rule:
 def _content(ctx: Context, x: Deref) -> core.Exp:
     symbol = ctx.symbol_of(x.cell)
     content = to_type(x.content)
+    cell = core.Var(symbol, symbol.type, x.span)
+    if isinstance(symbol.type, TCon) and symbol.type.name == "vector":
+        return _elements(cell, content, x.span)
     read = core.Builtin("Ref.!", TFun(symbol.type, content), x.span, (content,))
-    return core.Apply(read, core.Var(symbol, symbol.type, x.span), content, x.span)
+    return core.Apply(read, cell, content, x.span)
+
+
+def _elements(vector: core.Var, items: Type, span: Span) -> core.Exp:
+    """The list of the elements of a vector: `Vector.foldr (op ::) [] vector`."""
+    assert isinstance(items, TCon)
+    (item,) = items.args
+    to_list = TFun(vector.type, items)
+    joined = TFun(tuple_of(item, items), items)
+    steps = TFun(joined, TFun(items, to_list))
+    fold = core.Builtin("Vector.foldr", steps, span, (item, items))
+    cons = core.Apply(fold, core.Con(CONS, joined, span), TFun(items, to_list), span)
+    from_nothing = core.Apply(cons, core.Con(NIL, items, span), to_list, span)
+    return core.Apply(from_nothing, vector, items, span)

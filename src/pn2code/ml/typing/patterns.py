@@ -38,11 +38,11 @@ MAX_ALTERNATIVES = 256
 
 @frozen
 class Deref:
-    """`ref p` in a pattern: the cell gets a hidden name, and its contents are matched afterwards.
+    """`ref p` or `#[p, q]` in a pattern: the cell gets a hidden name, and its contents are matched afterwards.
 
     Args:
-        cell: the hidden variable.
-        content: type of the contents.
+        cell: the hidden variable, a reference or a vector.
+        content: type of the contents; those of a vector are a list.
         inner: the pattern for the contents.
         irrefutable: whether that always matches.
         span: of the pattern.
@@ -96,6 +96,8 @@ class Patterns:
                 return self._record(p, t, bindings)
             case s.ListPat():
                 return self._list(p, t, bindings)
+            case s.VectorPat():
+                return self._vector(p, t, bindings)
             case s.ConPat():
                 return self._constructor(p, t, bindings)
             case s.TypedPat():
@@ -116,6 +118,17 @@ class Patterns:
                 return lambda: core.PWild(to_type(t), p.span)
             case s.FlatPat():
                 raise AssertionError("flat pattern after the fixity pass")
+
+    def same_names(self, names: set[str], bindings: Bindings, span: Span) -> None:
+        """Refuses alternatives of one pattern that bind different names."""
+        different = sorted(names.symmetric_difference(bindings))
+        if different:
+            self._ctx.error(
+                codes.UNBOUND,
+                f"`{different[0]}` is bound in some alternatives of this pattern only",
+                span,
+                hint="each alternative has to bind the same variables",
+            )
 
     def _unify(self, found: Ty, expected: Ty, span: Span) -> None:
         self._ctx.unify(found, expected, span, "pattern")
@@ -242,12 +255,24 @@ class Patterns:
         """`ref p`: a variable here; the contents are matched after the rest of the pattern."""
         content = self._ctx.unifier.fresh()
         self._unify(ICon("ref", (content,)), t, p.span)
+        return self._opened(p.argument, t, content, p.span, bindings)
+
+    def _vector(self, p: s.VectorPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        """`#[p, q]`: a variable here; the list of the elements is matched after the rest of the pattern."""
+        item = self._ctx.unifier.fresh()
+        self._unify(ICon("vector", (item,)), t, p.span)
+        return self._opened(s.ListPat(p.items, p.span), t, i_list(item), p.span, bindings)
+
+    def _opened(
+        self, inside: s.Pat, t: Ty, content: Ty, span: Span, bindings: Bindings
+    ) -> PatternBuild:
+        """A hidden variable for what has contents that are matched later."""
         cell = Binding("cell", t)
         at = len(bindings.derefs)
-        inner = self.check(p.argument, content, bindings)
-        always = is_irrefutable(p.argument, self._ctx)
-        bindings.derefs.insert(at, Deref(cell, content, inner, always, p.span))
-        return lambda: core.PVar(self._ctx.symbol_of(cell), to_type(t), p.span)
+        inner = self.check(inside, content, bindings)
+        always = is_irrefutable(inside, self._ctx)
+        bindings.derefs.insert(at, Deref(cell, content, inner, always, span))
+        return lambda: core.PVar(self._ctx.symbol_of(cell), to_type(t), span)
 
     def _timed(self, p: s.ConPat, t: Ty, bindings: Bindings) -> PatternBuild:
         """`v@s`: a timed token taken apart; to CPN Tools `@` is a constructor."""
@@ -349,7 +374,7 @@ def _choices(p: s.Pat) -> list[s.Pat] | None:
                 return None if parts is None else [p]
             labels = [n for n, _ in p.fields]
             return [replace(p, fields=tuple(zip(labels, c, strict=True))) for c in parts]
-        case s.ListPat():
+        case s.ListPat() | s.VectorPat():
             parts = expand(p.items)
             if parts is None or len(parts) == 1:
                 return None if parts is None else [p]
@@ -382,7 +407,7 @@ def pattern_names(patterns: Sequence[s.Pat]) -> set[str]:
                 out |= pattern_names([x for _, x in p.fields])
             case s.OrPat():
                 out |= pattern_names(p.alternatives)
-            case s.ListPat():
+            case s.ListPat() | s.VectorPat():
                 out |= pattern_names(p.items)
             case s.ConPat():
                 out |= pattern_names([p.argument])

@@ -6,6 +6,7 @@ come to an end is refused: cycles, more than a few hundred files, files that are
 
 from __future__ import annotations
 
+import hashlib
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,12 +28,16 @@ class UsedFiles:
 
     Args:
         folder: the net's folder; None where there is none, then no file can be used.
+
+    Attributes:
+        found: those that were read, each with the SHA-256 of its content.
     """
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
         self._open: list[Path] = []
         self._count = 0
+        self.found: list[tuple[str, str]] = []
 
     @contextmanager
     def read(self, name: str, at: Span, d: Diagnostics) -> Iterator[SourceText | None]:
@@ -108,6 +113,7 @@ class UsedFiles:
             reason = getattr(problem, "strerror", None) or "its name is not valid"
             refuse(f"the file `{shown}` cannot be read: {reason.lower()}", "check its permissions")
             return None
+        self.found.append((str(path), hashlib.sha256(data).hexdigest()))
         try:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:

@@ -19,6 +19,7 @@ MARKINGS: Final = "markings"
 ARCS: Final = "arcs"
 COMPONENTS: Final = "components"
 MARKING: Final = "marking"
+PART: Final = "part"
 RUN: Final = "run"
 NET: Final = "net"
 
@@ -27,6 +28,7 @@ SAYS: Final = {
     ARCS: "all reachable markings and all arcs between them were seen",
     COMPONENTS: "all markings, all arcs and the components of the graph were seen",
     MARKING: "a marking was reached that shows the answer",
+    PART: "a part of the markings was seen that decides it, whatever the others are like",
     RUN: "a run was found that shows the answer",
     NET: "the net itself was examined, not its state space",
 }
@@ -34,8 +36,17 @@ _OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory", "reach"}
 """Checks of a supervisor that look at one marking after the other."""
 
 
-def of_property(p: m.Property, answer: str, *, has_run: bool) -> str | None:
-    """What the answer to a property rests on, one of those above; None: there is no answer."""
+def of_property(
+    p: m.Property, answer: str, *, has_run: bool, is_of_part: bool = False
+) -> str | None:
+    """What the answer to a property rests on, one of those above; None: there is no answer.
+
+    Args:
+        p: the property.
+        answer: its answer.
+        has_run: whether there is a run that shows it.
+        is_of_part: whether not all markings were seen.
+    """
     if answer == "inconclusive":
         return None
     match p.asked:
@@ -47,6 +58,8 @@ def of_property(p: m.Property, answer: str, *, has_run: bool) -> str | None:
             return MARKINGS
         case m.Linear():
             return RUN if answer == "no" and has_run else ARCS
+        case m.Branching() if is_of_part:
+            return PART
         case _:
             return ARCS
 

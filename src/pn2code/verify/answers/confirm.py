@@ -64,6 +64,15 @@ def problem(
             size = len(markings[-1].places[place])
             if size >= (low or 0) and (high is None or size <= high):
                 return f"the last marking of the trace has {size} tokens"
+        case m.Branching(formula) if answer.answer == "no" and _of_paths(formula) is not None:
+            straight = _of_paths(formula)
+            assert straight is not None
+            graph, nodes = _graph(game, markings, predicates, {straight})
+            path = _lasso(graph, nodes, steps, evidence.loop, exact_times, as_net)
+            if isinstance(path, str):
+                return path
+            if judge_ltl.holds_on(graph, straight, path):
+                return "the formula is true on the run"
         case m.Linear(formula, fair):
             fair = fair if as_net else ()  # of a cell that is not seen in the net
             looks = {formula, *(m.Atom("enabled", x.transition) for x in fair)}
@@ -87,6 +96,21 @@ def problem(
         case m.Branching():
             pass  # what one run shows of a formula that branches is no proof of it
     return None
+
+
+def _of_paths(f: m.Formula) -> m.Formula | None:
+    """What a formula that one run can violate says of each path; None: it is another one."""
+    match f:
+        case m.Op("AF", (p,)) if m.is_of_nodes(p):
+            return m.Op("F", (p,))
+        case m.Op("AG", (m.Op("AF", (p,)),)) if m.is_of_nodes(p):
+            return m.Op("G", (m.Op("F", (p,)),))
+        case m.Op("AG", (m.Op("implies", (q, m.Op("AF", (p,)))),)) if m.is_of_nodes(
+            p
+        ) and m.is_of_nodes(q):
+            return m.Op("G", (m.Op("implies", (q, m.Op("F", (p,)))),))
+        case _:
+            return None
 
 
 class _Waits:

@@ -61,6 +61,8 @@ class Answer:
     net_why: str = ""
     is_pumped: bool = False
     """a run shows it that is too long to be written: it repeats a round that can be repeated for ever"""
+    is_of_part: bool = False
+    """not all markings were seen, and what was seen decides"""
     assumes: tuple[str, ...] = ()
     """what a "yes" about a cell rests on that no state of it shows"""
 
@@ -73,7 +75,9 @@ class Answer:
     def rests_on(self) -> str | None:
         """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
         has_run = self.evidence is not None or self.is_pumped
-        return basis.of_property(self.about, self.answer, has_run=has_run)
+        return basis.of_property(
+            self.about, self.answer, has_run=has_run, is_of_part=self.is_of_part
+        )
 
     def row(self) -> dict[str, Any]:
         """For `--json`."""
@@ -120,10 +124,14 @@ def answers(
     padded = [*said, *[nothing] * (len(properties.properties) - len(said))]
     if found.covering is not None:  # no limit would have been high enough
         padded = [{**one, "why": found.why} if one.get("why") in REACHED else one for one in padded]
-    return tuple(_answer(p, one) for p, one in zip(properties.properties, padded, strict=True))
+    is_part = not found.seen.arcs
+    return tuple(
+        _answer(p, one, is_part=is_part or bool(one.get("part")))
+        for p, one in zip(properties.properties, padded, strict=True)
+    )
 
 
-def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
+def _answer(p: m.Property, said: Mapping[str, Any], *, is_part: bool) -> Answer:
     verdict: Verdict = "inconclusive"
     if said["answer"] in ("yes", "no"):
         # Of `reachable` it is asked whether nothing is reached, of `ltl` whether a path violates it.
@@ -142,6 +150,7 @@ def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
         evidence,
         said.get("value"),
         said.get("node"),
+        is_of_part=is_part and verdict != "inconclusive",
     )
 
 

@@ -52,7 +52,7 @@ from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
-_LIMITS = (*REACHED, "processor")
+_LIMITS = (*REACHED, "processor", "interrupted")
 """Why not all states of a cell were explored, but as many as could be."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
@@ -89,7 +89,7 @@ class Seen:
         Args:
             whole: of the cell, as much as could be explored.
         """
-        told = whole.answers[: len(self.answers)]
+        told = [{**row, "part": True} for row in whole.answers[: len(self.answers)]]
         if whole.why not in _LIMITS or len(told) < len(self.answers):
             return None
         if self.looked.running.meek and any(row.get("trace") for row in told):
@@ -220,7 +220,7 @@ def look(
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
     looked = Looked(running, _bounded(found, made, plan), None)
-    told = dict(enumerate(known))
+    told: dict[int, Mapping[str, Any]] = {i: {**row, "part": True} for i, row in enumerate(known)}
     for (i, x), row in zip(properties, rows, strict=False):
         if row["answer"] == "yes":
             told[i] = x.row(plan.properties.properties[i])

@@ -56,11 +56,13 @@ from pn2code.verify.controller.control_types import (
     FINITE,
     MAX_FIRINGS,
     OWNERSHIP,
+    CellProgram,
     Check,
     Control,
     Plan,
 )
 from pn2code.verify.controller.equals import NoPatternError
+from pn2code.verify.controller.hunts import hunt
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
@@ -68,7 +70,7 @@ from pn2code.verify.controller.running import NotModelledError, Running
 from pn2code.verify.controller.stated import all_stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
-from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.limits import REACHED, Limits, Reduction
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
 
@@ -176,6 +178,7 @@ def examine(
         reductions=(Reduction.TIME,) if partition.net.timed else (),
     )
     made = Generated()
+    program = CellProgram(running, plan.properties.predicates, made)
     # To look for a choice in a state that draws random numbers would draw others.
     is_asked_at_once = not nondeterminism.draws(running.net)
     at_once = f"orders\n{_asked_of_orders(plan.firings)}" if is_asked_at_once else ""
@@ -225,6 +228,9 @@ def examine(
             )
             if in_counts is not None and _has_suspects(poses, in_counts.looked.found, limits):
                 in_counts = None
+            if in_counts is not None and in_counts.has_open:
+                rows = _hunted(running, plan, part, soon, in_counts.answers)
+                in_counts = replace(in_counts, answers=rows)
             if in_counts is None or in_counts.has_open:
                 found = explore(running.net, plan.storage, first_part, d, options)
                 if in_counts is not None and found is not None:
@@ -249,6 +255,9 @@ def examine(
                 found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
             )
         count = len(plan.properties.properties)
+        answers = found.answers[:count] if in_counts is None else in_counts.answers
+        if in_counts is None and found.why in REACHED:
+            answers = _hunted(running, plan, limits, options, answers)
         options = replace(options, evidence=Path(name))
 
         def explore_with_moves(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
@@ -324,12 +333,33 @@ def examine(
             checks,
             found,
             running,
-            answers=found.answers[:count] if in_counts is None else in_counts.answers,
+            answers=answers,
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
+            program=program,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
+
+
+def _hunted(
+    running: Running,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    rows: Sequence[Mapping[str, Any]],
+) -> tuple[Mapping[str, Any], ...]:
+    """What is known of properties, with what a search for runs finds, where not all states can be seen."""
+    properties = [_with_programs(p.asked, running) for p in plan.properties.properties]
+    if running.meek or len(rows) != len(properties) or nondeterminism.draws(running.net):
+        return tuple(rows)
+    lines = "".join(f"{x}\n" for x in running.lines(first=True))
+
+    def explored(limits: Limits, options: ExploreOptions) -> Exploration | None:
+        return explore(running.net, plan.storage, limits, Diagnostics(), options)
+
+    own = replace(options, bindings=(), whole=())
+    return hunt(properties, rows, lines, limits, own, explored)
 
 
 def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:

@@ -11,12 +11,14 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
 from pn2code.net.engine_names import EngineNames
+from pn2code.net.predicate import Predicate
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Exploration
 
 FINITE = "finite-response"
@@ -209,6 +211,21 @@ class Plan:
         return Poses(partition, self.primitives, self.arms, self.storage)
 
 
+@frozen(eq=False)
+class CellProgram:
+    """The compiled cell as it runs, for those who explore it again.
+
+    Args:
+        running: its net.
+        predicates: what can be asked of its markings.
+        generated: the program of both.
+    """
+
+    running: Running
+    predicates: tuple[Predicate, ...]
+    generated: Generated
+
+
 @frozen
 class Control:
     """All checks of a cell, and what they were looked up in.
@@ -224,6 +241,7 @@ class Control:
         premises: what answers rest on besides.
         reduced: whether `found` is the reduced space of `by_turns`, or of `by_counts`.
         quiet: whether it is one of `by_counts`, and nothing is left for the supervisor at its end (`left_over`).
+        program: of the whole cell as it runs; None: there is none.
     """
 
     checks: tuple[Check, ...]
@@ -237,6 +255,7 @@ class Control:
     premises: Premises = Premises()
     reduced: bool = False
     quiet: bool = False
+    program: CellProgram | None = None
 
     @property
     def is_counted(self) -> bool:

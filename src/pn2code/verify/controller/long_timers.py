@@ -62,7 +62,7 @@ def _waited_for(
     partition: Partition,
 ) -> Channel | None:
     """The command whose answer ends the wait, as the timer does; None: it is not such a timer."""
-    put = puts_one(start).keys()
+    put = puts_one(start, partition).keys()
     waiting = ended(start, over, timer, partition)
     for command in partition.channels:
         if command.place not in put or command.kind is not ChannelKind.FLAG:

@@ -90,7 +90,7 @@ class _Timers:
         for start in self._own:
             asked = {
                 p: self._channels[p].reader
-                for p in puts_one(start)
+                for p in puts_one(start, self._partition)
                 if p in self._channels
                 and self._partition.owners[self._channels[p].writer].kind is OwnerKind.SUPERVISOR
             }
@@ -105,7 +105,7 @@ class _Timers:
     def _always_starts(self, command: int, timer: int) -> bool:
         """Whether no command of this kind is sent without the timer."""
         return all(
-            timer in puts_one(t)
+            timer in puts_one(t, self._partition)
             for t in self._own
             if any(a.place == command and a.kind is ArcKind.OUTPUT for a in t.arcs)
         )
@@ -254,12 +254,13 @@ def shortest(durations: Durations, e: core.Exp) -> float:
     return least if math.isfinite(least) and least > 0.0 else 0.0
 
 
-def puts_one(t: FlatTransition) -> dict[int, core.Exp | None]:
+def puts_one(t: FlatTransition, partition: Partition) -> dict[int, core.Exp | None]:
     """The places that get one token in any case, and its delay."""
     found: dict[int, core.Exp | None] = {}
     for a in t.arcs:
         if a.kind is ArcKind.OUTPUT and a.inscription is not None:
-            ways = list(delayed_tokens(a.inscription.value, a.inscription.form))
+            inscription, program = a.inscription, partition.net.program
+            ways = list(delayed_tokens(inscription.value, inscription.form, program))
             if len(ways) == 1 and ways[0][1] is not None and len(ways[0][1]) == 1:
                 found[a.place] = ways[0][2]
     return found
@@ -277,7 +278,7 @@ def of_supervisor(partition: Partition) -> list[FlatTransition]:
 def timers(start: FlatTransition, partition: Partition) -> Iterator[tuple[int, list[core.Exp]]]:
     """The places of the supervisor that get a token with a time, and the delays of it."""
     channels = {c.place for c in partition.channels}
-    for place, delay in puts_one(start).items():
+    for place, delay in puts_one(start, partition).items():
         if place not in channels and partition.net.places[place].colset.timed:
             yield place, [e for e in (start.delay, delay) if e is not None]
 
@@ -299,7 +300,7 @@ def ended(
     is_message = any(c.place in inputs for c in partition.channels)
     if timer not in inputs or timer in given or is_message or not _waits_for(over, timer):
         return set()
-    return (inputs - given) & puts_one(start).keys()
+    return (inputs - given) & puts_one(start, partition).keys()
 
 
 def _waits_for(t: FlatTransition, timer: int) -> bool:

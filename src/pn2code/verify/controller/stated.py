@@ -15,6 +15,8 @@ more than has to be so:
                   limit is no smaller than what T demands, so this is seen in a state, too
     ctl AF p, ctl AG EF p, ctl AG AF p, ltl F p, ltl G F p, with or without fairness
                   no run goes on for ever, so each path ends in a dead state: p is demanded there
+    ctl AG (q -> AF p), ctl AG (q -> EF p), ltl G (q -> F p), every q is followed by p
+                  the same, whatever q is: an end is repeated for ever, so p comes after each q
 
     every fires(T) is followed by p, within any number of firings
                   p holds in each state that T leads to. A place that T changes is looked at together with what p looks
@@ -161,6 +163,14 @@ def _condition(asked: m.Asked) -> tuple[m.Formula, bool, tuple[int, ...]] | None
         case m.Branching(
             m.Op("AF", (p,)) | m.Op("AG", (m.Op("EF", (p,)),)) | m.Op("AG", (m.Op("AF", (p,)),))
         ) | m.Linear(m.Op("F", (p,)) | m.Op("G", (m.Op("F", (p,)),))) if m.is_of_nodes(p):
+            return p, True, ()
+        case m.Branching(m.Op("AG", (m.Op("implies", (_, m.Op("AF" | "EF", (p,)))),))) | m.Linear(
+            m.Op("G", (m.Op("implies", (_, m.Op("F", (p,)))),))
+        ) if m.is_of_nodes(p):
+            return p, True, ()  # whatever it follows
+        case m.Linear(m.Op("G", (m.Op("implies", (_, m.Op("X", (m.Op("F", (p,)),)))),))) if (
+            m.is_of_nodes(p)
+        ):
             return p, True, ()
         case m.Response(first, second, _, None, False) if m.is_of_nodes(second):
             steps = [a for a in m.atoms(first) if a.kind == "fires"]

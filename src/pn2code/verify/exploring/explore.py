@@ -104,6 +104,7 @@ class ExploreOptions:
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
+        shuffle: depth first, the order of successors: 0 as they are found, 1 the other way round, others by chance.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
         stage: hears in words what is explored next, where several things are.
@@ -128,6 +129,7 @@ class ExploreOptions:
     bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
     covering: bool = False
+    shuffle: int = 0
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
@@ -340,6 +342,7 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
+        ("--shuffle", options.shuffle or None),
         ("--arena", sizes.memory >> 20),
         ("--max-states", limits.max_states),
         ("--max-seconds", None if seconds is None else max(seconds, LEAST_SECONDS)),

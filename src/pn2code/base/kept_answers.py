@@ -1,0 +1,168 @@
+"""Answers of earlier commands, kept by the content of everything that they depend on.
+
+    kept = KeptAnswers.of_user()                          # None: there is no folder for them, or they are not wanted
+    question = kept.question("scene", cell_file_bytes, "no parts are taken")
+    answer = question.answer()                            # None: it was never answered, or something has changed since
+    question.keep({"fine": True}, [Path("arm.urdf")])     # files that were read for the answer
+
+An answer that is out of date would be a false one, so a question is told apart by: the name and the parts given here;
+pn2code's version and, as Python does for its own compiled modules, the size and date of each of its source files; the
+interpreter, and the libraries and programs that take part; the machine. Files that became known only while the answer
+was looked for are kept with it, by the SHA-256 of their content, and looked at again before it is believed. What has
+changed since the command began is never believed and never kept, for nobody knows which of its contents was read.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import cached_property
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pn2code
+from pn2code.base.private_folder import private_folder, write_whole
+from pn2code.base.resources import cnative_folder, templates_folder
+
+ANEW = "PN2CODE_ANEW"
+"""The variable of the environment that says, with any value, that nothing is taken from what was kept."""
+MOST = 256
+"""Answers that are kept; the ones that were not asked for the longest time go first."""
+_PACKAGE = Path(__file__).resolve().parents[1]
+_SOURCES = frozenset({".py", ".c", ".h", ".j2", ".lark", ".sml", ".toml"})
+_LIBRARIES = ("numpy", "pybullet", "lxml", "lark", "jinja2")
+_TICK_NS = 20_000_000
+"""Dates of files are this coarse at most on the file systems that are looked at."""
+
+
+_LOADED_NS = time.time_ns()
+"""A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
+
+
+class KeptAnswers:
+    """Where answers are kept.
+
+    Args:
+        folder: for their files; it is made when there is one.
+        begun_ns: the time from which on files must not have changed: before any of them is read.
+    """
+
+    def __init__(self, folder: Path, begun_ns: int) -> None:
+        self.folder = folder
+        self._begun = begun_ns
+
+    @staticmethod
+    def of_user() -> KeptAnswers | None:
+        """Those of this user; None where there is no private folder, or `PN2CODE_ANEW` is set."""
+        folder = None if os.environ.get(ANEW) else private_folder()
+        return None if folder is None else KeptAnswers(folder / "answers", _LOADED_NS)
+
+    def question(self, name: str, *parts: object) -> Question:
+        """What is asked.
+
+        Args:
+            name: the beginning of the name of its file.
+            parts: all that the answer depends on: bytes, or values that `repr` tells apart.
+        """
+        digest = hashlib.sha256(self._makers)
+        for part in (name, *parts):
+            data = part if isinstance(part, bytes) else repr(part).encode()
+            digest.update(b"%d:" % len(data))
+            digest.update(data)
+        return Question(self.folder / f"{name}-{digest.hexdigest()[:40]}.json", self.is_settled)
+
+    def is_settled(self, path: Path) -> bool:
+        """Whether a file has been as it is since before the command began."""
+        try:
+            status = path.stat()
+        except OSError:
+            return False
+        return max(status.st_mtime_ns, status.st_ctime_ns) + _TICK_NS < self._begun
+
+    @cached_property
+    def _makers(self) -> bytes:
+        """Who answers: everything but the question itself."""
+        roots = (_PACKAGE, templates_folder(), cnative_folder())
+        sources = sorted(row for root in roots for row in _sources(os.fspath(root)))
+        libraries = [_stamp(spec.origin) for name in _LIBRARIES if (spec := find_spec(name))]
+        machine = os.uname() if hasattr(os, "uname") else sys.platform
+        said = (pn2code.__version__, sys.version, tuple(machine), sources, libraries)
+        return repr(said).encode()
+
+
+class Question:
+    """One question.
+
+    Args:
+        file: that of its answer, named by all that it depends on.
+        is_settled: whether a file has been as it is since before the command began.
+    """
+
+    def __init__(self, file: Path, is_settled: Any) -> None:
+        self.file = file
+        self._is_settled = is_settled
+
+    def answer(self) -> Any:
+        """The answer that was kept, as JSON has it; None: there is none, or a file has changed."""
+        try:
+            head, _, body = self.file.read_bytes().partition(b"\n")
+            if hashlib.sha256(body).hexdigest().encode() != head:
+                return None  # the file is damaged
+            kept = json.loads(body)
+            is_same = all(self._digest(Path(p)) == digest for p, digest in kept["files"].items())
+        except (OSError, ValueError):
+            return None
+        if not is_same:
+            return None
+        with suppress(OSError):
+            os.utime(self.file)
+        return kept["answer"]
+
+    def keep(self, answer: object, files: Iterable[Path]) -> None:
+        """Keeps an answer, if all files that it was made from are there and have not changed meanwhile."""
+        digests = {os.fspath(p.absolute()): self._digest(p) for p in sorted(set(files))}
+        if None in digests.values():
+            return
+        body = json.dumps({"files": digests, "answer": answer}).encode()
+        with suppress(OSError):  # without room it is looked for again the next time
+            self.file.parent.mkdir(mode=0o700, exist_ok=True)
+            write_whole(self.file, hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
+            _prune(self.file.parent)
+
+    def _digest(self, path: Path) -> str | None:
+        if not self._is_settled(path):
+            return None
+        try:
+            return hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError:
+            return None
+
+
+def _sources(folder: str) -> Iterator[tuple[str, int, int]]:
+    """Size and date of each source below a folder, as Python tells whether a module has changed."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_dir():
+                yield from _sources(entry.path)
+            elif os.path.splitext(entry.name)[1] in _SOURCES:  # noqa: PTH122 - a thousand times
+                status = entry.stat()
+                yield entry.path, status.st_size, status.st_mtime_ns
+
+
+def _stamp(path: str | None) -> tuple[str | None, int, int]:
+    if path is None:
+        return path, 0, 0
+    status = os.stat(path)  # noqa: PTH116
+    return path, status.st_size, status.st_mtime_ns
+
+
+def _prune(folder: Path) -> None:
+    dated = sorted((p.stat().st_mtime_ns, p) for p in folder.glob("*.json"))
+    for _, old in dated[:-MOST]:
+        old.unlink(missing_ok=True)

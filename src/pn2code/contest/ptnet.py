@@ -1,0 +1,209 @@
+"""Place/transition nets read from PNML straight into tables, without positions, names or origins.
+
+    tables = tables_of(path)              # None: the front end is to read the file
+
+The front end knows where everything stands, so that it can say what is wrong with a net. Of a net of a hundred thousand
+transitions it needs a minute, of which this is a thirtieth. It takes only what is plain: whatever is unusual, or wrong,
+is left to the front end, which says so.
+"""
+
+from __future__ import annotations
+
+import gc
+import re
+from collections.abc import Callable
+from pathlib import Path
+from xml.parsers import expat
+
+from pn2code.contest.tables import Tables
+
+_TYPES = ("ptnet", "ptNet", "PTNet")
+_DIGITS = re.compile(r"[0-9]{1,9}")
+_SKIPPED = frozenset({"name", "graphics", "toolspecific"})
+_CHILDREN = {
+    "": frozenset({"pnml"}),
+    "pnml": frozenset({"net"}),
+    "net": frozenset({"page", "place", "transition", "arc"}),
+    "page": frozenset({"place", "transition", "arc"}),
+    "place": frozenset({"initialMarking"}),
+    "transition": frozenset[str](),
+    "arc": frozenset({"inscription"}),
+    "initialMarking": frozenset({"text"}),
+    "inscription": frozenset({"text"}),
+    "text": frozenset[str](),
+}
+"""Element -> what is understood inside it."""
+
+
+def tables_of(path: Path) -> Tables | None:
+    """The net of a file; None if anything in it is not plain."""
+    was_enabled = gc.isenabled()
+    gc.disable()  # nothing is given back before all is read: looking for it would take a third of the time
+    try:
+        reader = _Reader()
+        with path.open("rb") as stream:
+            reader.parser.ParseFile(stream)
+        return reader.tables()
+    except (_UnusualError, expat.ExpatError, LookupError, ValueError, OSError):
+        return None
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class _UnusualError(Exception):
+    """Something that the front end has to look at."""
+
+
+class _Reader:
+    def __init__(self) -> None:
+        self.place: dict[str, int] = {}
+        self.transition: dict[str, int] = {}
+        self.initial: list[int] = []
+        self.arcs: list[tuple[str, str, int]] = []
+        self.nets = 0
+        self.pages = 0
+        self.within = [""]
+        self.skipped = 0
+        self.source = self.target = ""
+        self.number = 1
+        self.is_read = False
+        self.text: list[str] = []
+        p = self.parser = expat.ParserCreate()
+        p.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+        p.buffer_text = True
+        p.StartElementHandler = self._start
+        p.EndElementHandler = self._end
+        p.StartDoctypeDeclHandler = _refuse
+        p.ExternalEntityRefHandler = _refuse
+
+    def tables(self) -> Tables:
+        """What was read."""
+        pre: list[dict[int, int]] = [{} for _ in self.transition]
+        post: list[dict[int, int]] = [{} for _ in self.transition]
+        place, transition = self.place, self.transition
+        for source, target, weight in self.arcs:
+            if source in place:
+                arcs, p = pre[transition[target]], place[source]
+            else:
+                arcs, p = post[transition[source]], place[target]
+            arcs[p] = arcs.get(p, 0) + weight
+        if self.nets != 1 or self.pages > 1 or not place.keys().isdisjoint(transition):
+            raise _UnusualError
+        found = Tables(
+            tuple(self.initial),
+            tuple(pre),
+            tuple(post),
+            {name: (i,) for name, i in place.items()},
+            {name: (i,) for name, i in transition.items()},
+        )
+        if not found.fits():
+            raise _UnusualError
+        return found
+
+    # --- elements ---------------------------------------------------------------------------------
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        outer = self.within[-1]
+        if tag in _SKIPPED and outer not in ("", "pnml"):
+            self.skipped = 1
+            self.parser.StartElementHandler = self._deeper
+            self.parser.EndElementHandler = self._higher
+            return
+        if tag not in _CHILDREN[outer]:
+            raise _UnusualError
+        self.within.append(tag)
+        begun = _BEGUN.get(tag)
+        if begun is not None:
+            begun(self, attributes)
+
+    def _end(self, tag: str) -> None:
+        self.within.pop()
+        if tag == "arc":
+            self.arcs.append((self.source, self.target, self.number))
+        elif tag == "text":
+            self._weight()
+        elif tag in ("initialMarking", "inscription") and not self.is_read:
+            raise _UnusualError
+
+    def _deeper(self, _tag: str, _attributes: dict[str, str]) -> None:
+        self.skipped += 1
+
+    def _higher(self, _tag: str) -> None:
+        self.skipped -= 1
+        if not self.skipped:
+            self.parser.StartElementHandler = self._start
+            self.parser.EndElementHandler = self._end
+
+    def net(self, attributes: dict[str, str]) -> None:
+        """A net of the kind that is understood."""
+        self.nets += 1
+        name = attributes.get("type", "").strip().rstrip("/").rpartition("/")[2].rpartition("#")[2]
+        if name not in _TYPES:
+            raise _UnusualError
+
+    def page(self, _attributes: dict[str, str]) -> None:
+        """One of perhaps several pages, which the front end keeps apart."""
+        self.pages += 1
+
+    def begin_place(self, attributes: dict[str, str]) -> None:
+        """A place without tokens."""
+        self._new(self.place, attributes)
+        self.initial.append(0)
+        self.is_read = False
+
+    def begin_transition(self, attributes: dict[str, str]) -> None:
+        """A transition without arcs."""
+        self._new(self.transition, attributes)
+
+    def begin_arc(self, attributes: dict[str, str]) -> None:
+        """An arc of weight 1."""
+        if "type" in attributes:
+            raise _UnusualError
+        self.source = attributes["source"].strip()
+        self.target = attributes["target"].strip()
+        self.number = 1
+        self.is_read = False
+
+    def begin_text(self, _attributes: dict[str, str]) -> None:
+        """A number, of which there is one in each place or arc."""
+        if self.is_read:
+            raise _UnusualError
+        self.is_read = True
+        self.text.clear()
+        self.parser.CharacterDataHandler = self.text.append
+
+    def _weight(self) -> None:
+        self.parser.CharacterDataHandler = None
+        digits = "".join(self.text).strip()
+        is_marking = self.within[-1] == "initialMarking"
+        if _DIGITS.fullmatch(digits) is None:
+            raise _UnusualError
+        number = int(digits)
+        if is_marking:
+            self.initial[-1] = number
+        elif number:
+            self.number = number
+        else:
+            raise _UnusualError
+
+    @staticmethod
+    def _new(known: dict[str, int], attributes: dict[str, str]) -> None:
+        identity = attributes["id"].strip()
+        if not identity or identity in known:
+            raise _UnusualError
+        known[identity] = len(known)
+
+
+def _refuse(*_: object) -> int:
+    raise _UnusualError
+
+
+_BEGUN: dict[str, Callable[[_Reader, dict[str, str]], None]] = {
+    "net": _Reader.net,
+    "page": _Reader.page,
+    "place": _Reader.begin_place,
+    "transition": _Reader.begin_transition,
+    "arc": _Reader.begin_arc,
+    "text": _Reader.begin_text,
+}

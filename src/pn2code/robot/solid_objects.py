@@ -1,0 +1,36 @@
+"""Objects on which parts can stand: what a mesh file holds must be a body that can be read.
+
+objects = read_solids(t.tables("objects"), folder)
+
+Otherwise nobody could say what stands on it, and a part on it would be said to be in the air.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from pn2code.robot.hulls import Hull
+from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.table import Table
+
+A_BODY = "an OBJ or STL file that can be read, of a body that is not flat"
+
+
+def read_solids(
+    tables: Iterable[Table], folder: Path, *, solid: bool = True
+) -> tuple[SceneObject, ...]:
+    """The objects of tables; what is wrong is reported.
+
+    Args:
+        solid: whether they must be bodies; of a cell without parts nothing stands on them.
+    """
+    out = []
+    for table in tables:
+        thing = read_object(table, folder)
+        if thing is None:
+            continue
+        out.append(thing)
+        if solid and thing.mesh is not None and thing.mesh.is_file() and Hull.of(thing) is None:
+            table.wrong("file", A_BODY)
+    return tuple(out)

@@ -1,0 +1,151 @@
+"""`check --geometry` takes of a sensor that sees the scene what it can say there, and both where that is not known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.carrying_cell import NET, TOML, write
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.check import cells_of
+from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.legs import Planner
+from pn2code.geometry.situations import Situations
+from pn2code.verdict.opened import read
+from pn2code.verify.exploring.limits import Limits
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+# The feeder brings one box, and forgets the others; the arm looks whether there is one. `BRING` waits for nothing: so
+# the feeder may still be at it when the arm looks.
+LOOKING = (
+    ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
+    ("    place Done : PART\n    trans Accept", "    place Done : PART\n    place Asked : ANSWER\n    trans Accept"),
+    ("    trans Place code", "    trans Look\n      in Told : n\n      out Asked : (n, there)\n"
+     "    trans Skip\n      in Asked : (n, false)\n      out Done : n\n    trans Place code"),
+    ("      in Told : n\n      out Done : n", "      in Asked : (n, true)\n      out Done : n"),
+    ("    trans Feed code", "    trans Forget guard [n <> 1]\n      in Busy : n\n      out fed : n\n"
+     "      out Idle : ()\n    trans Feed guard [n = 1] code"),
+)  # fmt: skip
+AT_ONCE = (
+    ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
+    ("    place Done : PART\n", "    place Done : PART\n    place Was : BOOL\n"),
+    ("    trans Place code input (n) action (fetch (); go (slot n); release (); moveLinear (up (slot n)))\n"
+     "      in Told : n",
+     "    trans Place code input (n, there) action (if there then (fetch (); go (slot n); release (); "
+     "moveLinear (up (slot n))) else ())\n      in Told : n\n      out Was : there"),
+    *LOOKING[4:],
+)  # fmt: skip
+SENSOR = '[sensors.eye]\nvariable = "there"\nsees = "infeed"\npart = "box"\n'
+EARLY = (
+    ("      in Feeding : n\n      in fed : n\n", "      in Feeding : n\n"),
+    ("      in placed : n\n", "      in placed : n\n      in fed : n\n"),
+)
+ELSEWHERE = """
+[zones.tip]
+pose = { x = 1.35, z = 1.37 }
+size = [0.2, 0.2, 0.2]
+[zones.aside]
+pose = { x = -2.0, z = 1.0 }
+size = [0.2, 0.2, 0.2]
+[devices.feeder.axes.flap]
+kind = "swing"
+pose = { x = 3.0 }
+from = 0.0
+to = 90.0
+home = 30.0
+objects = [{ name = "leaf", size = [0.2, 0.02, 0.2], pose = { z = 0.5 } }]
+"""
+
+
+def situations(
+    folder: Path, *changes: tuple[str, str], sensor: str = SENSOR, parts: int = 2, toml: str = TOML
+) -> Situations:
+    net = NET.replace("parts = 2", f"parts = {parts}")
+    for old, new in changes:
+        assert old in net, old
+        net = net.replace(old, new, 1)
+    d = Diagnostics()
+    opened = read(write(folder, net, toml + sensor), {}, d)
+    assert opened is not None and opened.config is not None, [e.message for e in d.errors]
+    partition, cells = divide(opened.flat, opened.config, d), cells_of(opened.config, None, d)
+    assert partition is not None and cells is not None, [e.message for e in d.errors]
+    ((_, arms),) = cells
+    graph = explore_cell(partition, opened.storage, Limits(), d)
+    assert graph is not None and not graph.why
+    found = Situations(graph, Doing(Planner(arms), arms), tuple(r.name for r in arms.moving))
+    found.explore()
+    return found
+
+
+def faults(found: Situations) -> set[str]:
+    return {found.doing.activities[n].fault for n, _ in found.activities} - {""}
+
+
+def said(found: Situations) -> set[tuple[int, bool]]:
+    """What the sensor may say of each part."""
+    out = set()
+    for s in found.situations:
+        for element, _ in found.graph.arcs[s.state]:
+            e = found.graph.elements[element]
+            t = found.graph.partition.net.transitions
+            if not e.is_step and t[e.transition].short == "Look":
+                under_way = found._under_way(s)
+                if found._is_told(s, element, under_way):
+                    out.add((e.binding["n"], e.binding["there"]))
+    return out
+
+
+def test_what_has_come_is_seen_and_what_has_not_is_not(tmp_path: Path) -> None:
+    """As a run of the same cell has it (`test_sensors_that_see`)."""
+    found = situations(tmp_path, *LOOKING)
+    assert not found.why and not faults(found)
+    assert said(found) == {(1, True), (2, False)}
+
+
+def test_where_it_may_come_just_then_it_is_seen_or_not(tmp_path: Path) -> None:
+    found = situations(tmp_path, *LOOKING, *EARLY, parts=1)
+    assert said(found) == {(1, True), (1, False)}
+
+
+def test_who_is_asked_before_the_commands_is_asked_when_they_begin(tmp_path: Path) -> None:
+    found = situations(tmp_path / "a", *AT_ONCE)
+    assert not found.why and not faults(found)
+    # What it was told when it began stays so, whatever others do meanwhile.
+    early = situations(tmp_path / "b", *AT_ONCE, *EARLY, parts=1)
+    told = {(sensor, value) for s in early.situations for _, sensor, value in s.said}
+    assert told == {("eye", True), ("eye", False)}
+    assert any(s.contents.standing and (1, "eye", False) in s.said for s in early.situations)
+
+
+@pytest.mark.parametrize(
+    ("sees", "answers"),
+    [
+        (
+            '"tip"',
+            {True},
+        ),  # the tool of the arm at HOME: for the first part; then it stands elsewhere
+        ('"aside"', {False}),
+        ('"feeder.flap"\nat = 30.0', {True}),
+        ('"feeder.flap"\nat = 0.0', {False}),
+    ],
+)
+def test_zones_and_axes(tmp_path: Path, sees: str, answers: set[bool]) -> None:
+    sensor = f'[sensors.eye]\nvariable = "there"\nsees = {sees}\n{ELSEWHERE}'
+    found = situations(tmp_path, *LOOKING, sensor=sensor, parts=1)
+    assert {value for n, value in said(found) if n == 1} == answers
+
+
+def test_what_a_device_brings_and_takes_away_again_stands_there_meanwhile(tmp_path: Path) -> None:
+    """Nothing of it moves, so nobody has a leg of it; an arm that passes must be held against the box."""
+    changes = (
+        ("  fun feed () = ();\n", "  fun feed () = ();\n  fun clear () = ();\n"),
+        ("action (feed ())", "action (feed (); clear ())"),
+    )
+    clear = 'clear = { command = "tool", action = "clear", duration_s = 2.0, removes = "box", at = "infeed" }\n'
+    toml = TOML.replace("[robots.robot]", clear + "[robots.robot]", 1)
+    found = situations(tmp_path, *changes, toml=toml, sensor="", parts=1)
+    assert any(where.startswith("box") for _, _, where in found.beside)

@@ -1,0 +1,113 @@
+"""Zones on the replay page and in pictures: drawn, with a name, and lit when something was too fast in them."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.browser import launched, opened
+from helpers.door_cell import NET, TOML, door_cell
+from helpers.robot_cells import nowhere
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.source import read
+from pn2code.replay import cell as cells
+from pn2code.replay import run as runs
+from pn2code.replay.motion import Motion
+from pn2code.replay.page import page
+from pn2code.robot.backend import Camera
+from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.scene import load
+from pn2code.run.cell import RunOptions, run_cell
+
+FRONT = """
+[zones.front]
+pose = { x = 0.8, z = 1.0 }
+size = [0.8, 0.8, 2.0]
+max_speed = 0.2
+
+[zones.far]
+pose = { x = 4.0, z = 1.0, yaw = 30.0 }
+size = [1.0, 2.0, 1.0]
+"""
+SMALL = {"width": 960, "height": 540}
+LABELS = "() => replay.page.cell.zones.shown.map(z => z.label.children.map(c => c.name)).flat()"
+COLOURS = "() => replay.page.cell.zones.shown.map(z => z.edge.color.getHexString())"
+
+
+def cell_with_zones() -> RobotCell:
+    found = load(tomllib.loads(TOML + FRONT), Path(), nowhere, Diagnostics())
+    assert found is not None
+    return found
+
+
+def test_the_page_is_told_where_zones_are() -> None:
+    front, far = cells.describe(cell_with_zones())["zones"]
+    assert (front["name"], front["size"], front["maxSpeed"]) == ("front", [0.8, 0.8, 2.0], 0.2)
+    assert (far["maxSpeed"], far["frame"][3]) == (None, 4.0)
+    assert far["frame"][:2] == pytest.approx([np.sqrt(0.75), -0.5])
+
+
+@pytest.mark.bullet
+def test_pictures_show_zones_and_which_one_was_broken() -> None:
+    camera = Camera("side", (1.0, -5.0, 1.5), (1.0, 0.0, 1.0), 60.0)
+
+    def share(red: tuple[int, int], green: tuple[int, int]) -> int:
+        """How many pixels have so much red and green, and little blue."""
+        image = backend.render(camera, 320, 180)
+        assert image is not None
+        r, g, b = (image[:, :, i].astype(int) for i in range(3))
+        return int(
+            ((red[0] < r) & (r < red[1]) & (green[0] * r < 100 * g) & (100 * g < green[1] * r) & (3 * b < r)).sum()
+        )  # fmt: skip
+
+    backend = BulletBackend(cell_with_zones())
+    try:
+        gap = backend.clearances(0.3)
+        amber, vermilion = share((60, 256), (60, 78)), share((60, 256), (38, 50))
+        backend.light_zone("front")
+        assert amber > 20 and share((60, 256), (38, 50)) > vermilion + 100
+        assert backend.clearances(0.3) == gap
+    finally:
+        backend.close()
+    plain = BulletBackend(cell_with_zones(), looks=False)
+    try:
+        plain.light_zone("front")
+        assert plain.clearances(0.3) == gap
+    finally:
+        plain.close()
+
+
+@pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
+def test_a_broken_zone_is_lit_on_the_page_when_it_is_broken(tmp_path: Path) -> None:
+    folder = door_cell(tmp_path / "cell", NET, TOML + FRONT)
+    d, motion = Diagnostics(), Motion()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    result = run_cell(folder, options, d, [motion])
+    assert result is not None and result.record.too_fast is not None, [e.message for e in d.errors]
+    broken = result.record.too_fast
+    assert (broken.zone, broken.t) == ("front", result.record.time) and broken.speed > 0.2
+    assert f"`{broken.link}` is {1000 * broken.speed:.1f} mm/s fast" in result.record.reason
+    assert result.summary["zones"] == {"front": broken.described()}
+    document = read(folder / "cell.cpn", Diagnostics())
+    assert document is not None
+    described: Any = runs.describe(result, motion, document)
+    assert [z.get("broken") for z in described["cell"]["zones"]] == [broken.described(), None]
+    file = tmp_path / "replay.html"
+    file.write_text(page(described), encoding="utf-8")
+    with launched() as browser, opened(browser, viewport=SMALL) as shown:
+        shown.open(file)
+        shown.ask("() => replay.seek(0)")
+        assert shown.ask(LABELS) == ["front ≤ 200 mm/s", "far"]
+        assert shown.ask(COLOURS) == ["e69f00", "0072b2"]
+        shown.ask("t => replay.seek(t)", broken.t)
+        words = f"front ≤ 200 mm/s: {broken.link} {1000 * broken.speed:.1f} mm/s"
+        assert shown.ask(LABELS) == [words, "far"]
+        assert shown.ask(COLOURS) == ["d55e00", "0072b2"]
+        assert words in shown.ask("() => replay.page.cell.legend.textContent")
+        assert not shown.errors

@@ -1,0 +1,113 @@
+"""Whatever the tests compile a second time, from the same sources in the same way, is a copy of the first object.
+
+Most of what is compiled is the C runtime, for one program after the other. So there is a program in front of the
+compiler, under its name, that remembers objects; `remembering_cc.c` says on what an object depends. `./dev test` keeps
+them in the folder of the environment, for the next run: most nets do not change either. Otherwise they are kept for one
+run of the tests. In a new environment, as in `.ci/run`, all is compiled.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from pn2code.emission.environment import c_string
+
+KEPT = "PN2CODE_TEST_OBJECTS"
+"""The variable with the folder where objects are kept from one run to the next."""
+SOURCE = Path(__file__).with_suffix(".c")
+NAMES = ("cc", "gcc")
+MOST_BYTES = 1 << 30
+"""Of objects that are kept; the ones that were not used for the longest time go first."""
+_FLAGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Werror")
+_SECONDS_LONG_AGO = 3600.0
+
+
+def made(folder: Path, store: Path) -> Path | None:
+    """The folder with the programs that go in front of the compilers; None where there is none of them.
+
+    Args:
+        folder: is made, with the programs in it.
+        store: where objects are kept.
+    """
+    found = {name: path for name in NAMES if (path := shutil.which(name))}
+    if not found:
+        return None
+    store.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(exist_ok=True)
+    compilers = ", ".join(f"{c_string(name)}, {c_string(path)}" for name, path in found.items())
+    what = {
+        "COMPILERS": compilers,
+        "VERSION": c_string(_version(found.values())),
+        "STORE": c_string(str(store.resolve())),
+    }
+    program = folder / "remembering-cc"
+    words = [f"-D{name}={text}" for name, text in what.items()]
+    compiler = next(iter(found.values()))
+    subprocess.run([compiler, *_FLAGS, *words, str(SOURCE), "-o", str(program)], check=True)
+    for name in found:
+        (folder / name).hardlink_to(program)
+    return folder
+
+
+def _version(compilers: Iterable[str]) -> str:
+    """What they are: an object of one that was installed anew is another one."""
+    parts = []
+    for compiler in sorted(set(compilers)):
+        said = _said(compiler, "--version")
+        for program in (
+            compiler,
+            *(_said(compiler, f"-print-prog-name={n}") for n in ("cc1", "as")),
+        ):
+            path = Path(shutil.which(program.strip()) or program.strip()).resolve()
+            about = path.stat() if path.exists() else None
+            parts.append(f"{path} {about and (about.st_size, about.st_mtime_ns)} {said}")
+    return "\n".join(parts)
+
+
+def _said(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def use(
+    changed: pytest.MonkeyPatch, common: Path, once: Callable[[str, Callable[[Path], object]], Path]
+) -> None:
+    """Puts the programs in front of PATH.
+
+    Args:
+        changed: patches PATH.
+        common: the folder of the session.
+        once: makes a folder of that name, for all workers.
+    """
+    kept = os.environ.get(KEPT)
+    store = Path(kept) if kept else common / "remembered"
+
+    def make(folder: Path) -> None:
+        made(folder, store)
+        prune(store)
+
+    folder = once("remembering-cc", make)
+    if folder.is_dir():
+        changed.setenv("PATH", str(folder), prepend=os.pathsep)
+
+
+def prune(store: Path, most: int = MOST_BYTES) -> None:
+    """Removes what was not used for the longest time, and what a process has left that was killed."""
+    files = []
+    for path in store.glob("*"):
+        with suppress(OSError):
+            about = path.stat()
+            files.append((about.st_mtime, about.st_size, path))
+    room = most
+    for used, size, path in sorted(files, key=lambda file: file[0], reverse=True):
+        room -= size
+        is_left = path.suffix not in (".o", ".files") and time.time() - used > _SECONDS_LONG_AGO
+        if room < 0 or is_left:
+            path.unlink(missing_ok=True)

@@ -1,0 +1,54 @@
+"""The contest's examinations of place/transition nets of known kinds, by each method alone: none is ever wrong."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers.examined import examined, numbers
+from helpers.random_tables import Graph
+from helpers.table_families import FAMILIES
+from pn2code.contest.engine import engine
+from pn2code.contest.portfolio import answers, space
+from pn2code.diagnostics import Diagnostics
+
+SECONDS = 600.0
+"""Ends what hangs; nothing takes that long, on however busy a machine."""
+WHOLE = ("", "diagrams")
+"""Methods that know all of a small net."""
+PARTS = ("explore", "reach", "ctl", "ltl")
+"""Methods that come to their end, and have answers for some of the lines."""
+
+
+@pytest.fixture(scope="module")
+def program() -> Iterator[Path]:
+    """The engine."""
+    with engine(Diagnostics()) as found:
+        assert found is not None
+        yield found
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_each_method_alone(program: Path, family: str) -> None:
+    tables = FAMILIES[family]()
+    graph = Graph.of(tables, 2000)
+    assert graph is not None
+    lines, expected = examined(random.Random(family), graph)
+    for only in (*WHOLE, *PARTS):
+        found = {
+            a.name: a.value for a in answers(program, tables, lines, seconds=SECONDS, only=only)
+        }
+        assert found.items() <= expected.items(), only
+        assert found and (only not in WHOLE or len(found) == len(expected)), only
+    for only in ("explore", "diagrams"):
+        sizes = space(program, tables, seconds=SECONDS, mebibytes=256, only=only)
+        assert sizes is not None
+        assert (
+            sizes.states,
+            sizes.arcs,
+            sizes.tokens_in_place,
+            sizes.tokens_in_marking,
+        ) == numbers(graph)

@@ -1,0 +1,102 @@
+"""Answers are kept by the content of everything that they depend on, and believed only while all of it is the same."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from pn2code.base import kept_answers
+from pn2code.base.kept_answers import ANEW, KeptAnswers
+
+SECOND = 10**9
+
+
+def later(folder: Path) -> KeptAnswers:
+    """As a command has them that begins when all files here are old."""
+    return KeptAnswers(folder / "answers", time.time_ns() + SECOND)
+
+
+def test_an_answer_is_kept_with_the_files_that_it_is_about(tmp_path: Path) -> None:
+    arm = tmp_path / "arm.urdf"
+    arm.write_text("<robot/>")
+    question = later(tmp_path).question("scene", b"cell", 3)
+    assert question.answer() is None
+    question.keep({"fine": True}, [arm])
+    assert later(tmp_path).question("scene", b"cell", 3).answer() == {"fine": True}
+    assert later(tmp_path).question("scene", b"cell", 4).answer() is None
+    assert later(tmp_path).question("scene", b"cel", b"l", 3).answer() is None
+    assert later(tmp_path).question("space", b"cell", 3).answer() is None
+
+    date = arm.stat().st_mtime_ns
+    arm.write_text("<Robot/>")
+    os.utime(arm, ns=(date, date))  # the same size and date, but not the same content
+    assert later(tmp_path).question("scene", b"cell", 3).answer() is None
+    arm.unlink()
+    assert later(tmp_path).question("scene", b"cell", 3).answer() is None
+
+
+def test_what_changes_while_a_command_runs_is_neither_kept_nor_believed(tmp_path: Path) -> None:
+    arm = tmp_path / "arm.urdf"
+    begun = KeptAnswers(tmp_path / "answers", time.time_ns())
+    arm.write_text("<robot/>")
+    begun.question("scene").keep("fine", [arm])
+    assert later(tmp_path).question("scene").answer() is None
+    later(tmp_path).question("scene").keep("fine", [arm])
+    assert begun.question("scene").answer() is None
+    assert later(tmp_path).question("scene").answer() == "fine"
+
+
+def test_a_file_that_is_not_there_was_not_read(tmp_path: Path) -> None:
+    later(tmp_path).question("scene").keep("fine", [tmp_path / "missing.stl"])
+    assert later(tmp_path).question("scene").answer() is None
+
+
+@pytest.mark.parametrize("damage", [b"", b"{", b"0" * 64 + b'\n{"files": {}, "answer": "fine"}'])
+def test_a_damaged_file_is_no_answer(damage: bytes, tmp_path: Path) -> None:
+    question = later(tmp_path).question("scene")
+    question.keep("fine", [])
+    assert question.answer() == "fine"
+    question.file.write_bytes(damage)
+    assert question.answer() is None
+    question.keep("fine", [])
+    assert question.answer() == "fine"
+
+
+def test_other_code_answers_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "package"
+    (package / "robot").mkdir(parents=True)
+    module = package / "robot" / "scene.py"
+    module.write_text("x = 1\n")
+    monkeypatch.setattr(kept_answers, "_PACKAGE", package)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() == "fine"
+    module.write_text("x = 10\n")
+    assert later(tmp_path).question("scene").answer() is None
+    later(tmp_path).question("scene").keep("fine", [])
+    (package / "robot" / "more.py").write_text("")
+    assert later(tmp_path).question("scene").answer() is None
+
+
+def test_only_the_last_ones_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kept_answers, "MOST", 2)
+    kept = later(tmp_path)
+    for number, name in enumerate(("a", "b", "c")):
+        question = kept.question("scene", name)
+        question.keep(name, [])
+        os.utime(question.file, ns=(number * SECOND, number * SECOND))
+    assert [kept.question("scene", x).answer() for x in ("a", "b", "c")] == [None, "b", "c"]
+
+
+def test_of_the_user_unless_it_is_not_wanted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv(ANEW, "1")
+    assert KeptAnswers.of_user() is None
+    monkeypatch.delenv(ANEW)
+    kept = KeptAnswers.of_user()
+    assert kept is not None and kept.folder == tmp_path / "pn2code" / "answers"
+    assert not kept.is_settled(tmp_path)  # it is newer than this process

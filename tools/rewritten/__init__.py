@@ -1,0 +1,1 @@
+"""Nets written in another way, which must behave as before."""
