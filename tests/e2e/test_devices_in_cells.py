@@ -88,8 +88,46 @@ def test_what_a_clamp_holds_is_not_pulled_out(tmp_path: Path) -> None:
     assert "`arm` pulls `blank.1` out of `mill/vice`, which holds it" in record.reason
 
 
+ASIDE = TOML.replace("[places.inVice]\nx = 1.0\n", "[places.inVice]\nx = 1.0\ny = -0.01\n")
+EMPTY = ASIDE.replace('holds = "inVice"', 'holds = "inVice"\nmay_be_empty = true')
+
+
+@pytest.mark.parametrize(("toml", "why"), [(ASIDE, "`blank.1`, is 10.0 mm away"), (EMPTY, "")])
+def test_a_clamp_that_closes_on_nothing_stops_a_run(toml: str, why: str, tmp_path: Path) -> None:
+    """In `TOML`, with which other runs finish, the arm holds the blank there."""
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    found = run_cell(door_cell(tmp_path / "cell", toml=toml), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    record = found.record
+    assert record.verdict == ("failed" if why else "finished"), record.reason
+    says = "`mill/vice` closes on nothing: no part is at `inVice`; the nearest, "
+    assert not why or f"{says}{why}" in record.reason
+
+
+def test_over_all_interleavings_a_clamp_closes_on_a_part(tmp_path: Path) -> None:
+    """As long as the arm holds it there, and neither brings it nor goes away meanwhile."""
+    found = situations(door_cell(tmp_path / "held"))
+    closed = [a for a in found.doing.activities if a.leans]
+    assert not found.why and {a.leans for a in closed} == {frozenset({"arm"})}
+    assert not any(a.fault for a in found.doing.activities)
+    leaving = NET.replace("      out clamp\n", "      out clamp\n      out leave\n", 1)
+    leaving = leaving.replace("      in clamped\n      out leave\n", "      in clamped\n", 1)
+    assert leaving.count("out leave") == NET.count("out leave")
+    assert situations(door_cell(tmp_path / "leaving", leaving)).why == "order"
+    early = NET.replace(
+        "      out load\n      out Loading\n",
+        "      out load\n      out clamp\n      out Loading\n",
+    )
+    early = early.replace("      in loaded\n      out clamp\n", "      in loaded\n", 1)
+    assert early.count("out clamp\n") == NET.count("out clamp\n")
+    faults = [a.fault for a in situations(door_cell(tmp_path / "early", early)).doing.activities]
+    assert any("closes on nothing: no part is at `inVice`" in x for x in faults)
+
+
 def test_over_all_interleavings_the_door_is_in_the_way(tmp_path: Path) -> None:
-    layout = looked(door_cell(tmp_path / "cell", BARE), tmp_path / "traces")
+    toml = TOML.replace('holds = "inVice"', 'holds = "inVice"\nmay_be_empty = true')
+    layout = looked(door_cell(tmp_path / "cell", BARE, toml), tmp_path / "traces")
     assert layout.of_moves == "yes" and layout.of_pairs == "no"
     assert {p.where.b for p in layout.pairs if p.where} == {"mill/door"}
     assert {m.robot for m in layout.moves} == {"arm", "mill"}

@@ -21,7 +21,7 @@ from pn2code.run.cell import RunOptions, run_cell
 AWAY = """
 [layouts.here]
 [layouts.away]
-devices.feeder.base = { x = 0.3, y = 0.1, yaw = 5.0 }
+devices.feeder.base = { x = 0.1, y = 0.1, z = -0.05, yaw = 2.0 }
 [layouts.moved]
 devices.feeder.base = { x = 0.1, y = 0.2 }
 places.infeed = { x = 1.6, y = -0.4 }
@@ -60,7 +60,7 @@ def test_all_that_moves_goes_there(tmp_path: Path) -> None:
     ("layout", "at"), [("here", (1.5, -0.6)), ("moved", (1.6, -0.4)), ("away", None)]
 )
 def test_a_run_has_it_there(tmp_path: Path, layout: str, at: tuple[float, float] | None) -> None:
-    """The belt stops at the place, wherever both are; `away` the feeder puts the box beside the belt's stop."""
+    """The belt stops at the place, wherever both are; `away` the feeder puts the box above the belt, where it hangs."""
     net = belts.NET.replace("parts = 2", "parts = 1")
     if layout == "moved":
         net = net.replace("at (1500.0, ~600.0, 650.0)", "at (1600.0, ~400.0, 650.0)")

@@ -67,6 +67,11 @@ LONG = {
     "pn2code verify examples/welding --durations": "test_verify_durations asks a smaller cell",
     "pn2code verify examples/welding --durations --property \"every fires(Supervisor'Turned) is followed by "
     "fires(Supervisor'Both) within 60 seconds\"": "the same",
+    "pn2code check --geometry examples/machining": "./dev geometry looks at it",
+    "pn2code verify examples/machining": CELLS,
+    "pn2code generate examples/machining -o out && make -C out": CELLS,
+    "pn2code conform examples/machining": "all states of a larger cell",
+    "pn2code run examples/machining": "test_examples_in_3d does it",
     "pn2code check --geometry examples/assembly": "./dev geometry looks at it",
     "pn2code verify examples/assembly": CELLS,
     "pn2code generate examples/assembly -o out && make -C out": CELLS,

@@ -73,12 +73,74 @@ def described(cell: Path, result: RunResult, seen: Motion) -> Any:
     return runs.describe(result, seen, document)
 
 
-def test_what_carries_another_is_not_taken(tmp_path: Path) -> None:
-    cell = stacking_cell(tmp_path / "cell", [STACK[0], f"{STACK[1]}; pick (1700.0, 600.0, 550.0)"])
-    found = run(cell, tmp_path / "fake")
-    message = "takes `box.1`, but `box.2` stands on it"
-    assert found.record.verdict == "failed" and message in found.record.reason
-    assert "robot.tdl:" in found.record.reason and "Top.Robot.Place" in found.record.reason
+TRAY = """
+[parts.tray]
+size = [0.6, 0.3, 0.02]
+at = [{ x = 1.6, y = 0.6, z = 0.01 }]
+grips = [{ x = -0.2, z = 0.01, roll = 180.0 }]
+"""
+GRIPS = """
+gripTray = { command = "tool", action = "suck", duration_s = 0.5, takes = "tray" }
+freeTray = { command = "tool", action = "blow", duration_s = 0.3, releases = "tray" }
+"""
+CARRY = (
+    "put (1750.0, 600.0, 170.0); go (at (1400.0, 600.0, 20.0)); gripTray (); moveLinear (at (1400.0, 600.0, 300.0)); "
+    "WAY; moveLinear (at (1400.0, 200.0, 20.0)); freeTray (); moveLinear (at (1400.0, 200.0, 900.0)); "
+    "pick (1750.0, 200.0, 170.0)"
+)
+LEVEL = "moveLinear (at (1400.0, 200.0, 300.0))"
+STEEP = "moveLinear {x = 1400.0, y = 400.0, z = 300.0, rx = 160.0, ry = 0.0, rz = 0.0}; " + LEVEL
+
+
+def tray_cell(folder: Path, way: str) -> Path:
+    cell = stacking_cell(folder, [CARRY.replace("WAY", way)], parts=1)
+    toml = (cell / "cell.toml").read_text()
+    (cell / "cell.toml").write_text(
+        toml.replace("[primitives]\n", f"[primitives]{GRIPS}", 1)
+        .replace("[robots.robot]\n", '[robots.robot]\nbranch = "front/up/minus"\n', 1)
+        .replace("x = 1.5, y = 0.6, z = 0.4", "x = -1.5, y = 0.6, z = 0.4", 1)
+        + TRAY
+    )
+    (cell / "cell.cpn").write_bytes(
+        (cell / "cell.cpn")
+        .read_bytes()
+        .replace(
+            b"fun grip () = ();", b"fun grip () = (); fun gripTray () = (); fun freeTray () = ();"
+        )
+    )
+    return cell
+
+
+@pytest.mark.bullet
+def test_a_tray_is_carried_with_what_stands_on_it(tmp_path: Path) -> None:
+    cell = tray_cell(tmp_path / "cell", LEVEL)
+    motion = Motion()
+    computed = run(cell, tmp_path / "fake", seen=motion)
+    assert computed.record.verdict == "finished", computed.record.reason
+    changes = computed.summary["parts"]["box.1"]
+    assert [(c["effect"], c.get("on")) for c in changes[2:]] == [
+        ("releases", ["tray.1"]),
+        ("takes", None),
+        ("releases", ["tray.1"]),
+        ("takes", None),
+    ]
+    assert changes[4]["at"] == pytest.approx([1.75, 0.2, 0.095])
+    page = described(cell, computed, motion)["cell"]
+    states = next(p["states"] for p in page["parts"] if p["name"] == "box.1")
+    assert [s["holder"] for s in states][-4:] == ["", "robot", "", "robot"]
+    seen = run(cell, tmp_path / "bullet", "bullet")
+    assert seen.record.events == computed.record.events
+    layout = looked(cell, tmp_path / "runs")
+    assert layout.of_moves == "yes", [m.problem for m in layout.moves if m.answer != "yes"]
+    assert layout.of_pairs == "yes", [p.says for p in layout.pairs]
+    assert any("with tray and 1 on it" in m.command for m in layout.moves)
+
+
+def test_a_tray_that_is_tilted_loses_what_stands_on_it(tmp_path: Path) -> None:
+    """What is proved of that: `tests/unit/geometry/test_level.py`."""
+    found = run(tray_cell(tmp_path / "cell", STEEP), tmp_path / "fake")
+    assert found.record.verdict == "failed"
+    assert "`robot` tilts `box.1` by 10" in found.record.reason
 
 
 @pytest.mark.parametrize(

@@ -165,6 +165,7 @@ jerk = 5.0
 jaw = [0.04, 0.1, 0.05]
 colour = [0.2, 0.2, 0.2]
 holds = "jaws"
+may_be_empty = true
 
 [devices.belt.axes.conveyor]
 kind = "belt"
@@ -399,7 +400,11 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         ]
         shown += [(r.kinematics.arm_angle, r.carries) for r in cell.robots]
         shown += [a.described() for r in cell.moving for a in r.axes]
-        shown += [(c.axis.name, c.jaws, c.place) for r in cell.devices for c in r.axes.clamps]
+        shown += [
+            (c.axis.name, c.jaws, c.place, c.may_be_empty)
+            for r in cell.devices
+            for c in r.axes.clamps
+        ]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
 
 

@@ -17,12 +17,13 @@ from tools.geometry.eyes import Eyes
 from pn2code.geometry.graph import CellGraph
 from pn2code.robot.belts import until_stop
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.clamps import closing, holding, nearest, on_nothing, taken_along
 from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
+from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of
 from pn2code.run.handling import PartKeeper
@@ -53,8 +54,10 @@ class _Arm:
         robot = self.executor.robot
         parts.parts.stand(robot.name, self.executor.q)
         command = until_stop(robot, parts.parts, self.left.pop(0))
-        for plate in turned(robot, self.executor.begin(command, 0.0)):
-            parts.parts.turn(plate)
+        motion = self.executor.begin(command, 0.0)
+        line = turned_by(robot, motion.trajectory, robot.belts)
+        for plate in turned(robot, motion):
+            parts.parts.turn(plate, line if plate in line else frozenset())
 
     def pulls(self, cell: RobotCell, parts: PartKeeper, joints: dict[str, np.ndarray]) -> str:
         """What it takes out of a clamp that holds it, as it begins to move; "": nothing."""
@@ -155,10 +158,15 @@ def _walk(
             arm = busy[owner]
             done = arm.advance(choice.random() * pace[owner])
             if done is not None:
-                look()
+                joints = look()
                 robot = arm.executor.robot
-                for plate in turned_by(robot, done.trajectory, robot.belts):
-                    parts.run_out(plate)
+                if line := turned_by(robot, done.trajectory, robot.belts):
+                    parts.run_out(line)
+                ends = [done.trajectory.q(t) for t in (0.0, done.duration)]
+                for held in closing(robot, ends[0], ends[1]):
+                    near = nearest(cell, held, parts.parts.everywhere(joints))
+                    if near.off > 0.0:
+                        return on_nothing(held, near)
                 handle(robot.name, done.command, arm.executor, parts)
                 if arm.left:
                     begun = arm
@@ -173,6 +181,9 @@ def _walk(
             begun.begin(parts)
             if pulled := begun.pulls(cell, parts, look()):
                 return pulled
+        for name, q in look().items():
+            if why := tilted(cell.robot(name), q, parts.parts.present.values()):
+                return why
         found = monitor.check(
             float(step),
             look(),

@@ -26,6 +26,7 @@ _RULES: tuple[tuple[str, str, str, str], ...] = (
     ("raised", "value", r"\bUT\.col\b", "positions below zero of a union"),
     ("raised", "raised", r"\binteger(De|En)code\b", "another exception of a function of Comms/CPN"),
     ("raised", "value", r"\bVector\.update\b", "an index beyond the end of a vector is not noticed"),
+    ("raised", "value", r"\b(Word32|LargeWord)\.toInt\b.*\.fromInt\b", "the engine's compiler makes nothing of toInt after fromInt"),
     ("*", "*", r"\bReal\.(to|from)ManExp\b", "exponents of zero and of what is not finite"),
     ("value", "value", r"\bReal\.rem\b", "remainders of what is very different in size"),
     ("*", "*", r"\bMath\.\w+\b.*(1E10|10737|maxFinite|minPos|posInf|negInf)|\bMath\.\w+\b.*nan", "functions of the processor outside of its range"),

@@ -88,6 +88,14 @@ class Tables:
                 hint=_number_hint(value, kind),
             )
             return fallback
+        if value == "" and key.kind == "text" and key.default != "":
+            self.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` is empty, but {key.expected or _any_of(key)} is expected",
+                self.at(*path, name),
+                hint="" if required or key.required else "remove it if nothing is meant",
+            )
+            return fallback
         return value
 
     def choice(self, table: Mapping[str, Any], path: KeyPath, key: Key, default: str = "") -> str:

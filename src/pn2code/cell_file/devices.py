@@ -91,8 +91,17 @@ DEVICE_AXIS = Section(
         Key(
             "holds",
             "text",
-            "A name of `[places]`: a part that is there cannot be taken away while the gap is less than `to`.",
+            "A name of `[places]`: a part that is there cannot be taken away while the gap is less than `to`; closing "
+            "when no part is there is a fault.",
             "the name of a place",
+            only=_CLAMP,
+        ),
+        Key(
+            "may_be_empty",
+            "flag",
+            "Whether it may close when no part is at `holds`.",
+            "`true` or `false`",
+            default=False,
             only=_CLAMP,
         ),
         Key(

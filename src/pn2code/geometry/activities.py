@@ -8,7 +8,7 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import TypeVar
@@ -20,12 +20,22 @@ from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.shown import Shown
 from pn2code.robot.belts import line_of, told_to_run, until_stop
-from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.clamps import (
+    Held,
+    Near,
+    closes,
+    closing,
+    holding,
+    nearest,
+    on_nothing,
+    taken_along,
+)
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
+from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
@@ -67,7 +77,8 @@ Load = tuple[Part, ...]
 def spot(part: Part) -> str:
     """The same for parts of a kind that are in the same place, or in the same hand in the same way."""
     numbers = np.round(part.frame[:3], _DIGITS) + 0.0
-    return f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
+    out = f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
+    return out if part.up is None else f"{out} up {(np.round(part.up, _DIGITS) + 0.0).tolist()}"
 
 
 def spots(load: Load) -> str:
@@ -91,6 +102,7 @@ class Activity:
         may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
             is taken away, they do.
         handled: where parts are handled in it (a place in the world, m), and how far around that (m).
+        leans: the robots with parts in their tools on which clamps close in it: they must not move meanwhile.
         halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
 
@@ -106,6 +118,7 @@ class Activity:
     turns: frozenset[str] = frozenset()
     may_run: frozenset[str] = frozenset()
     handled: tuple[tuple[Array, float], ...] = ()
+    leans: frozenset[str] = frozenset()
     halfway: tuple[Contents, ...] = ()
 
     @property
@@ -161,10 +174,15 @@ class Doing:
         contents: Contents,
         others: tuple[Stand, ...] = (),
     ) -> Activity:
-        """What an owner does on these commands; `others`: where arms with turntables stand meanwhile."""
+        """What an owner does on these commands.
+
+        `others`: where arms with turntables, or with parts in their tools, stand meanwhile.
+        """
         handles = any(isinstance(c, ToolAction) and c.handling is not None for c in commands)
-        if not handles and owner not in self._with_tables:
-            others = ()
+        asked = self._with_tables if handles or owner in self._with_tables else frozenset()
+        if stand is not None and any(closes(self._cell.robot(owner), c) for c in commands):
+            asked |= {p.holder for p in contents.parts.present.values()}
+        others = tuple(s for s in others if s.robot in asked)
         turned = tuple(s.number for s in others if s.robot != owner)
         key = (owner, commands, None if stand is None else stand.number, contents.number, turned)
         if key not in self._known:
@@ -194,6 +212,7 @@ class Doing:
         turns: frozenset[str] = frozenset()
         may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
+        leans: frozenset[str] = frozenset()
         halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
         others = tuple(s for s in others if s.robot != owner)
@@ -234,16 +253,32 @@ class Doing:
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
                     handled += self._handed_on(ran, (*others, stand), contents)
+                for held in closing(own, leg.start.q, leg.end.q):
+                    kinds |= frozenset(self._cell.parts)
+                    handled.append(self._around_clamp(held))
+                    near = self._nearest(held, contents, (*others, stand))
+                    wrong = on_nothing(held, near)
+                    done = replace(done, kinds=kinds)
+                    if near.off > ROUNDING:
+                        done = replace(done, fault=wrong, is_part=True, command=command, doubt="")
+                    elif near.off > -ROUNDING and not done.doubt:
+                        done = replace(done, doubt=_nearly(wrong), command=command)
+                    if near.part is not None and near.part.holder:
+                        leans |= {near.part.holder}
+                if done.fault:
+                    break
             else:
                 halfway.append(contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
                     tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
-                handled.append(self._around(command.handling, tcp))
+                place = self._around(command.handling, tcp)
+                handled.append(place)
                 doing = _Handled(owner, command.handling, tcp, standing)
                 try:
-                    contents, doubt = self._handle(doing, contents)
+                    before, (contents, doubt) = contents, self._handle(doing, contents)
+                    handled += self._with_riders(owner, place, (before, contents))
                 except PartFault as fault:
                     done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
                     break
@@ -257,8 +292,27 @@ class Doing:
             turns=turns,
             may_run=may_run,
             handled=tuple(handled),
+            leans=leans,
             halfway=tuple(halfway),
         )
+
+    def _nearest(self, held: Held, contents: Contents, standing: tuple[Stand, ...]) -> Near:
+        """The part that a clamp closes on."""
+        parts = parts_of(contents, standing, 0.0)
+        tcps = {s.robot: self._cell.robot(s.robot).T_world_base @ s.T_base_tcp for s in standing}
+        there = [
+            (p, tcps[p.holder] @ p.frame if p.holder else parts.world(p))
+            for p in parts.present.values()
+            if not p.holder or p.holder in tcps  # of one that moves nobody knows where it is
+        ]
+        return nearest(self._cell, held, there)
+
+    def _around_clamp(self, held: Held) -> tuple[Array, float]:
+        """Where a clamp closes on a part, and how far around that it reaches, whichever it is."""
+        ground = Ground.of(self._cell)
+        spot = matrix_of(self._cell.places[held.clamp.place])[:3, 3]
+        kinds = self._cell.parts.values()
+        return spot, max((ground.radius(k.name) + k.tolerance for k in kinds), default=0.0)
 
     def _run_out(
         self, leg: Leg, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
@@ -297,6 +351,15 @@ class Doing:
         assert frame is not None, "only a tool handles parts where it is"
         kind = self._cell.parts[handling.part]
         return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
+
+    def _with_riders(
+        self, owner: str, place: tuple[Array, float], some: Iterable[Contents]
+    ) -> Iterator[tuple[Array, float]]:
+        """The same of what stands on the part that is handled, each on the one before."""
+        riders = [p for c in some for p in riding(c.parts.present.values(), owner)]
+        radii = {p.name: Ground.of(self._cell).radius(p.kind.name) for p in riders}
+        if radii:
+            yield place[0], place[1] + 2.0 * sum(radii.values())
 
     def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
         """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
@@ -394,12 +457,17 @@ class Doing:
         does = f"`{doing.owner}` releases `{change.part}`"
         if change.effect == "creates":
             does = f"`{doing.owner}` puts `{change.part}` at `{doing.handling.place}`"
-        trouble = overlap(self._shown.backend, change.part, ROUNDING)
-        if trouble is None:
-            return ""
-        if trouble.margin < -ROUNDING:
-            raise PartFault(f"{does}, which {trouble.text}, part at {describe(change.pose)}")
-        return _nearly(f"{does}, which {trouble.text}")
+        doubt = ""
+        riders = [c.part for c in parts.settled if c.effect == "releases"]
+        for name in (change.part, *riders):
+            trouble = overlap(self._shown.backend, name, ROUNDING)
+            if trouble is None:
+                continue
+            what = does if name == change.part else f"{does} with `{name}` on it"
+            if trouble.margin < -ROUNDING:
+                raise PartFault(f"{what}, which {trouble.text}, part at {describe(change.pose)}")
+            doubt = doubt or _nearly(f"{what}, which {trouble.text}")
+        return doubt
 
 
 @frozen(eq=False)

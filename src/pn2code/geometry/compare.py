@@ -22,6 +22,8 @@ from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.level import level
+from pn2code.geometry.part_names import gap_as_seen, held, on_plate, standing
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
@@ -33,6 +35,7 @@ from pn2code.robot.executor import turned_by
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
+from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
@@ -70,6 +73,7 @@ class Comparison:
         self._margins: dict[int, Margins] = {}
         self.compared = 0
         self._watch = ZoneWatch(cell)
+        self._tilts: dict[tuple[int, str], tuple[Verdict, str]] = {}
         self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
     def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
@@ -80,10 +84,8 @@ class Comparison:
             shape = self._shapes[leg.robot]
             # Names for the collision library that no other part has that is shown at the same time.
             named = tuple(
-                replace(p, name=f"{p.kind.name}.held_by_{leg.robot}")
-                if p.holder
-                else replace(p, name=f"{p.kind.name}.{i}_on_{p.plate.replace('/', '_')}")
-                for i, p in enumerate(load, 1)
+                replace(p, name=held(p.name, leg.robot) if p.holder else on_plate(p.name, p.plate))
+                for p in load
             )
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
             self._tracks[key] = Track(shape, leg, links, named)
@@ -97,6 +99,16 @@ class Comparison:
         if key not in self._hurries:
             self._hurries[key] = slow_enough(self._watch, track, load)
         return self._hurries[key]
+
+    def tilts(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether what stands on a part that is carried stays there, and why it does not."""
+        riders = tuple(riding(load, leg.robot))
+        key = (leg.number, spots(riders))
+        if not riders or not leg.is_moving:
+            return "yes", ""
+        if key not in self._tilts:
+            self._tilts[key] = level(self.cell.robot(leg.robot), leg, riders)
+        return self._tilts[key]
 
     def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
         """Whether anything moves: of a device with a belt only what stands on it."""
@@ -156,7 +168,7 @@ class Comparison:
             certain = min(certain, least)
         if not clear:
             return None
-        return Nearest(where, min(certain, best))
+        return Nearest(gap_as_seen(where), min(certain, best))
 
     def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
         """Each leg of one with each of the other, since nobody knows how far they are."""
@@ -178,15 +190,15 @@ class Comparison:
         path = other.path if other.path is not None else self._planner.standing(other.start).path
         assert path is not None
         for part, frame in taken_along(robot, leg.start.q, load, turned_by(robot, leg.path)):
-            for held in holding(self.cell, part.kind, frame):
+            for clamped in holding(self.cell, part.kind, frame):
                 # The way of a clamp is straight, so it is narrowest at one of its ends.
                 ends = path.on_way(np.array([0.0, 1.0]))
-                q = min(ends, key=held.gap)
-                if held.device is device and held.holds(q):
+                q = min(ends, key=clamped.gap)
+                if clamped.device is device and clamped.holds(q):
                     x, y, z = frame[:3, 3].tolist()
-                    names = f"{leg.robot}/{part.kind.name}", held.name
+                    names = f"{leg.robot}/{part.name}", clamped.name
                     gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
-                    why = held.words(leg.robot, part.kind.name, q)
+                    why = clamped.words(leg.robot, part.name, q)
                     return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
         return None
 
@@ -198,7 +210,7 @@ class Comparison:
         where = (key, spot(part))
         if where not in self._beside:
             self.compared += 1
-            shown = replace(part, name=f"{part.kind.name}.standing")
+            shown = replace(part, name=standing(part.name))
             box = self._boxes[part.kind.name]
             found = self._beside[where] = self.sweeper.beside(track, shown, box)
             if found.outcome == "touch":

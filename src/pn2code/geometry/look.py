@@ -18,6 +18,7 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.part_names import as_seen
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
@@ -170,7 +171,10 @@ class Look:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
         begins = numbers(pose_of(base @ leg.start.T_base_tcp))
-        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in load if p.holder)
+        held = [p for p in load if p.holder]
+        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
+        if on_it := sum(p.up is not None for p in held):
+            does += f" and {on_it} on it"
         if leg.fault is not None:
             return Move(
                 leg.robot,
@@ -184,7 +188,7 @@ class Look:
             )
         is_device = self.cell.robot(leg.robot).is_device
         margins = self.comparison.margins(leg)
-        scene, itself = self.comparison.around(leg, load)
+        scene, itself = map(as_seen, self.comparison.around(leg, load))
         answer: Verdict = "yes"
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
@@ -192,9 +196,12 @@ class Look:
                 answer, why = "no", touch_in_words(apart) + what
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
-        hurry, words_ = self.comparison.hurries(leg, load)
-        if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
-            answer, why = hurry, words_
+        for hurry, words_ in (
+            self.comparison.hurries(leg, load),
+            self.comparison.tilts(leg, load),
+        ):
+            if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
+                answer, why = hurry, words_
         return Move(
             leg.robot,
             t,
@@ -311,6 +318,7 @@ def _met(
 ) -> Pair:
     """Two things that do not surely keep apart; a part has no robot, and no joints."""
     is_touch = apart.outcome == "touch"
+    apart = as_seen(apart)
     return Pair(
         robots,
         transitions,

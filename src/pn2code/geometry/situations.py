@@ -177,8 +177,9 @@ class Situations:
         return out
 
     def _turned(self, here: Situation) -> tuple[Stand, ...]:
-        """Where the arms stand that have turntables: parts can stand there."""
-        return tuple(s for s in here.stands if s.robot in self._with_tables)
+        """Where the arms stand that have turntables, or parts in their tools: parts can be there."""
+        holders = {p.holder for p in here.contents.parts.present.values()}
+        return tuple(s for s in here.stands if s.robot in self._with_tables or s.robot in holders)
 
     def _after(
         self, here: Situation, element: int, target: int, under_way: dict[int, Activity]
@@ -317,6 +318,7 @@ class Situations:
         self._note_parts(number, here, under_way, by_arm)
         self._note_put_down(number, here, under_way)
         self._expect_order(here, under_way)
+        self._expect_leant_on(under_way)
         if self._with_tables:
             self._expect_still(under_way)
             self._expect_none_between(under_way)
@@ -385,6 +387,14 @@ class Situations:
         name = self._owner_names[owner]
         commands = self.graph.commands(element)
         return self.doing.of(name, commands, stand, contents, self._turned(here))
+
+    def _expect_leant_on(self, under_way: dict[int, Activity]) -> None:
+        """An arm stands while a clamp closes on the part in its tool; else it may be gone, or not be there yet."""
+        leans = {robot for a in under_way.values() for robot in a.leans}
+        for element, activity in under_way.items():
+            owner = self._owner_names[self.graph.elements[element].owner]
+            if owner in leans and any(leg.is_moving for leg, _ in activity.legs):
+                self.why = self.why or "order"
 
     def _expect_none_between(self, under_way: dict[int, Activity]) -> None:
         """What somebody else has put on a turntable half way through is there before or after; else it is not seen."""

@@ -197,6 +197,8 @@ class Elaborator:
                 self._variables.pop(name, None)
                 continue
             declared = self._ctx.top.values.get(name)
+            if declared is self._library_top.values.get(name):
+                declared = None  # what the library has hides no variable
             if isinstance(declared, Binding | ConEntry) and name not in self._variables:
                 self._clash(name, origin, "inscriptions mean the value, which was declared first")
                 continue
@@ -702,7 +704,8 @@ class Elaborator:
             bare = name.removeprefix("more/")
             if top is not library_top:
                 own = (top.structures, top.functors, top.signatures, self._ctx.colsets)
-                if name in self._from_library or any(bare in known for known in own):
+                values = (top.values, self._ctx.net_variables)
+                if name in self._from_library or any(bare in known for known in (*own, *values)):
                     continue
                 self._from_library.add(name)
             if name not in self._library:

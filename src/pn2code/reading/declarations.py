@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.reading.codes import CPN_ELEMENT
 from pn2code.reading.document import (
     RawBlock,
@@ -66,7 +66,8 @@ class DeclarationReader:
                     source = child.source(self.origin(child, "", "declaration"))
                     items.append(RawMl(child.get("id"), source, source.origin))
                 case "globref":
-                    items.append(self.globref(child))
+                    found = self.globref(child)
+                    items += [] if found is None else [found]
                 case "use":
                     ml = child.child("ml") or child
                     source = ml.source(self.origin(child, "use", "declaration"))
@@ -115,6 +116,9 @@ class DeclarationReader:
         if kind is not None:
             for declared in _declared(kind.tag, ids, fields):
                 self.check_name(declared, origin)
+            named = kind.tag in ("enum", "index", "record", "union")
+            if named and not all(_declared(kind.tag, ids, fields)):
+                self.no_name(f"a name in the definition of colour set `{name}`", origin)
         declare = node.child("declare")
         display = node.child("layout")
         return RawColset(
@@ -158,7 +162,18 @@ class DeclarationReader:
             )
         for n in names:
             self.check_name(n, origin)
-        return RawVar(node.get("id"), names, type_name, origin)
+        if not all(names):
+            self.no_name("a name in a declaration of variables", origin)
+        return RawVar(node.get("id"), tuple(filter(None, names)), type_name, origin)
+
+    def no_name(self, what: str, origin: Origin) -> None:
+        """CPN Tools cannot compile a declaration in which a name is empty."""
+        self.d.error(
+            CPN_ELEMENT,
+            f"{what} is empty",
+            origin,
+            hint="open the net in CPN Tools and enter the declaration again",
+        )
 
     def check_name(self, name: str, origin: Origin) -> None:
         """Names that are declared are alphanumeric names of CPN ML."""
@@ -171,16 +186,28 @@ class DeclarationReader:
                 hint="a name is a letter followed by letters, digits, `_` and `'`, and is no keyword",
             )
 
-    def globref(self, node: Node) -> RawGlobref | RawOther:
-        """A `globref`; one without its value (seen in real files) is kept as `RawOther`."""
+    def globref(self, node: Node) -> RawGlobref | RawOther | None:
+        """A `globref`; one without its value (seen in real files) is kept as `RawOther`, one without a name is none."""
         name_node, ml = node.child("id"), node.child("ml")
         name = name_node.text.strip() if name_node else ""
         base = self.origin(node, f"reference `{name}`", "declaration")
+        if ml is not None and not name:
+            self.no_name("the name of a reference", base)
+            return None
         if ml is None or not name:
             return self.other(node)
         if name in RESERVED:
             self.check_name(name, base)
-        return RawGlobref(node.get("id"), name, ml.source(base), base)
+        value = ml.source(base)
+        if not value.text.strip():  # CPN Tools declares it as `ref ()`
+            value = SourceText("()", value.origin)
+            self.d.warning(
+                CPN_ELEMENT,
+                f"reference `{name}` has no value: CPN Tools declares it as `ref ()`",
+                base,
+                hint="write its first value",
+            )
+        return RawGlobref(node.get("id"), name, value, base)
 
     def other(self, node: Node) -> RawOther:
         """Anything else, with its text for the message."""

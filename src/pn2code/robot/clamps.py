@@ -1,8 +1,9 @@
-"""Parts that clamps hold: a part in a clamp that is not open cannot be taken away.
+"""Parts that clamps hold: a part in a clamp that is not open cannot be taken away, and a clamp closes on a part.
 
     for part, frame in taken_along(robot, q, parts, plates): ...
     for held in holding(cell, kind, T_world_part): held.device, held.clamp
     held.gap(q)                     # m, where the device stands at q
+    for clamp in closing(device, before, after): nearest(cell, clamp, [(part, T_world_part), ...])
 
 A clamp says where a part is that it holds (`holds`, a place). It holds that part as long as its gap is less than the
 greatest one. What the jaws touch is another matter, which distances tell.
@@ -10,9 +11,11 @@ greatest one. What the jaws touch is another matter, which distances tell.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Iterator
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.commands import Command, MoveExternal
 from pn2code.robot.external import Clamp
 from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.parts_table import PartKind
@@ -72,3 +75,45 @@ def taken_along(
     for part in parts:
         if part.holder == robot.name or part.plate in plates:
             yield part, carried_to(robot, q, part)
+
+
+@frozen(eq=False)
+class Near:
+    """The part that is nearest to where a clamp holds one; None: there is none. off: m, by how much it is too far."""
+
+    part: Part | None
+    off: float
+
+
+def closes(device: CellRobot, command: Command) -> bool:
+    """Whether a command may close a clamp that must not be empty."""
+    if not isinstance(command, MoveExternal):
+        return False
+    told = {a.axis for a in command.along}
+    return any(c.axis.name in told for c in device.axes.clamps if c.place and not c.may_be_empty)
+
+
+def closing(device: CellRobot, before: Array, after: Array) -> Iterator[Held]:
+    """The clamps that a move closes, and that must not be empty then."""
+    for clamp in device.axes.clamps:
+        held = Held(device, clamp)
+        is_closing = held.gap(after) < held.gap(before) - SAME
+        if clamp.place and not clamp.may_be_empty and is_closing and held.holds(after):
+            yield held
+
+
+def nearest(cell: RobotCell, held: Held, parts: Iterable[tuple[Part, Array]]) -> Near:
+    """The part that a clamp closes on, if it is not too far, of parts with their frames in the world."""
+    spot = matrix_of(cell.places[held.clamp.place])
+    offs = [(difference(frame, spot)[0] - p.kind.tolerance, p) for p, frame in parts]
+    off, part = min(offs, key=lambda x: x[0], default=(math.inf, None))
+    return Near(part, off)
+
+
+def on_nothing(held: Held, near: Near) -> str:
+    """That a clamp closes and there is no part, for people."""
+    text = f"`{held.name}` closes on nothing: no part is at `{held.clamp.place}`"
+    if near.part is None:
+        return text
+    away = 1000.0 * (near.off + near.part.kind.tolerance)
+    return f"{text}; the nearest, `{near.part.name}`, is {away:.1f} mm away"

@@ -77,6 +77,14 @@ def read_devices(t: Table, around: Around) -> tuple[CellRobot, ...]:
     for name, data in t.data.items():
         if not isinstance(data, Mapping) or "axes" not in data:
             continue  # what is no table is reported where its page is read
+        if not data["axes"]:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"device `{name}` has `axes`, but none is named",
+                t.inside(name).at("axes"),
+                hint=f"add a table `[devices.{name}.axes.NAME]`, or remove `axes`",
+            )
+            continue
         base = read_pose(t.only(name, DEVICE_PLACE), "base")
         axes = _axes(t.inside(name, "axes"), name, replace(around, T_world_base=matrix_of(base)))
         if axes:
@@ -137,10 +145,10 @@ def _axis(t: Table, name: str, around: Around) -> _Read | None:
     frame = matrix_of(read_pose(t, "pose"))
     direction = np.array([0.0, 0.0, 1.0])
     objects: tuple[SceneObject, ...] = ()
-    holds = ""
+    holds, may_be_empty = "", False
     if kind == "clamp":
         objects = (_jaw(t),)
-        holds = _place(t, "holds", around.places)
+        holds, may_be_empty = _place(t, "holds", around.places), t.flag("may_be_empty")
     else:
         t.has("objects")
         objects = read_solids(t.tables("objects"), around.folder)
@@ -166,7 +174,7 @@ def _axis(t: Table, name: str, around: Around) -> _Read | None:
         name, slides, frame, direction, lower, upper, speed, acceleration, jerk, home,
         objects=objects,
     )  # fmt: skip
-    return _Read((own,)) if kind != "clamp" else _clamped(own, holds)
+    return _Read((own,)) if kind != "clamp" else _clamped(own, holds, may_be_empty)
 
 
 def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
@@ -283,7 +291,7 @@ def _jaw(t: Table) -> SceneObject:
     return SceneObject("jaw", "box", pose, read_colour(t), size=(x, y, z))
 
 
-def _clamped(gap: ExternalAxis, place: str) -> _Read:
+def _clamped(gap: ExternalAxis, place: str, may_be_empty: bool) -> _Read:
     """Both jaws: each of them goes half of the gap, in half of the speed."""
     jaws = []
     for number, turn in ((1, 0.0), (2, math.pi)):
@@ -297,7 +305,7 @@ def _clamped(gap: ExternalAxis, place: str) -> _Read:
             )
         )  # fmt: skip
     one, other = jaws
-    clamp = Clamp(replace(gap, objects=()), (one.name, other.name), place)
+    clamp = Clamp(replace(gap, objects=()), (one.name, other.name), place, may_be_empty)
     return _Read((one, other), clamp)
 
 

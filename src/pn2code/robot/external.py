@@ -116,11 +116,13 @@ class Clamp:
         axis: what is commanded, the gap.
         jaws: the names of both axes.
         place: where a part is that it holds, a name of `[places]`; "": nothing is said.
+        may_be_empty: whether it may close when none is there.
     """
 
     axis: ExternalAxis
     jaws: tuple[str, str]
     place: str = ""
+    may_be_empty: bool = False
 
 
 @frozen(eq=False)

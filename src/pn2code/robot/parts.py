@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -40,6 +40,7 @@ class Part:
         frame: `T_world_part`; `T_tcp_part` while it is carried, `T_plate_part` while it stands on a turntable.
         holder: the robot that carries it, "" if it stands.
         plate: the turntable with which it turns, "left/plate"; "": with none.
+        up: of what stands on the part that its holder carries, what was upwards then, in its frame; None: it does not.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Part:
     frame: Array
     holder: str = ""
     plate: str = ""
+    up: Array | None = None
 
     @property
     def carrier(self) -> str:
@@ -157,24 +159,34 @@ class Parts:
             self._plates[f"{robot}/{axis.name}"] = own.T_world_plate(axis, q)
 
     def held_by(self, robot: str) -> Part | None:
-        """The part that a robot carries."""
-        return next((p for p in self.present.values() if p.holder == robot), None)
+        """The part that a robot carries; others may stand on it."""
+        held = (p for p in self.present.values() if p.holder == robot and p.up is None)
+        return next(held, None)
 
     def world(self, part: Part) -> Array:
         """`T_world_part` of a part that stands."""
         assert not part.holder, "where a part in a tool is, is the robot's to say"
         return self._plates[part.plate] @ part.frame if part.plate else part.frame
 
+    def everywhere(self, joints: Mapping[str, Array]) -> list[tuple[Part, Array]]:
+        """All parts with where they are in the world; `joints`: of the robots that hold some in their tools."""
+        return [
+            (p, carried_to(self.cell.robot(p.holder), joints[p.holder], p))
+            if p.holder
+            else (p, self.world(p))
+            for p in self.present.values()
+        ]
+
     def riders(self, plate: str) -> list[Part]:
         """What turns with a turntable."""
         return [p for p in self.present.values() if p.plate == plate]
 
-    def rest(self, part: Part, without: str = "") -> Rest:
-        """How a part stands, also if another one were not there."""
+    def rest(self, part: Part, without: Collection[str] = ()) -> Rest:
+        """How a part stands, also if others were not there."""
         others = [
             (p.name, p.kind, self.world(p))
             for p in self.present.values()
-            if not p.holder and p.name not in (part.name, without)
+            if not p.holder and p.name != part.name and p.name not in without
         ]
         return self._ground.rest(part.kind, self.world(part), others, self._plates, self.slack)
 
@@ -200,7 +212,7 @@ class Parts:
                     "which does not"
                 )
 
-    def _riders_of(self, plates: Collection[str]) -> Iterator[Part]:
+    def _riders_of(self, plates: Set[str]) -> Iterator[Part]:
         return (p for p in self.present.values() if p.plate in plates)
 
     def _expect_alone(self, plate: str, riders: list[Part], line: frozenset[str]) -> None:
@@ -222,7 +234,7 @@ class Parts:
         goes = {x: self.present[x].plate for x in on if x in self.present}
         return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
-    def run_out(self, line: Collection[str]) -> None:
+    def run_out(self, line: Set[str]) -> None:
         """Belts that have run as one come to rest. Raises PartFault if the middle of something has come off their end.
 
         Up to there they take it along, and it does not tip over on the way; beyond, nobody knows how far it goes.
@@ -304,8 +316,23 @@ class Parts:
                 f"gripped (at most {1000.0 * kind.tolerance:g} mm, {math.degrees(kind.angle):g} deg), {at}"
             )
         frame = self.world(near)
-        carries = self._expect_free(f"`{robot}` takes `{near.name}`", near, at)
-        self.present[near.name] = Part(near.name, kind, inverse(tcp) @ frame, robot)
+        riders, carries = self._lifted(f"`{robot}` takes `{near.name}`", near, at)
+        back = inverse(tcp)
+        frames = {p.name: self.world(p) for p in riders}
+        if riders:
+            goes = [(near, frame), *((p, frames[p.name]) for p in riders)]
+            heavy = self.cell.robot(robot).overload_of(
+                (p.name, p.kind.mass, back @ own) for p, own in goes
+            )
+            if heavy:
+                on_it = " and ".join(f"`{p.name}`" for p in riders)
+                raise PartFault(f"`{robot}` takes `{near.name}` with {on_it} on it: {heavy}, {at}")
+        self.present[near.name] = Part(near.name, kind, back @ frame, robot)
+        for part in riders:
+            own = frames[part.name]
+            up = own[2, :3].copy()
+            self.present[part.name] = Part(part.name, part.kind, back @ own, robot, up=up)
+            self.settled += (PartChange("takes", part.name, pose_of(own)),)
         if carries:
             self._settle_again()
         return PartChange("takes", near.name, pose_of(frame))
@@ -325,7 +352,33 @@ class Parts:
             raise PartFault(
                 f"`{robot}` releases `{part.name}` {trouble}, part at {describe(pose_of(frame))}"
             )
-        return self._put_down(f"`{robot}` releases `{part.name}`", "releases", part, rest.on)
+        before = dict(self.present)
+        try:
+            change = self._put_down(f"`{robot}` releases `{part.name}`", "releases", part, rest.on)
+            self._put_riders(robot, part.name, tcp)
+        except PartFault:
+            self.present = before
+            raise
+        return change
+
+    def _put_riders(self, robot: str, on: str, tcp: Array) -> None:
+        """What stands on a part that has been put down stands there, with what that stands on."""
+        riders = [p for p in self.present.values() if p.holder == robot and p.up is not None]
+        for part in riders:
+            self.present[part.name] = Part(part.name, part.kind, tcp @ part.frame)
+        self._settle()
+        for rider in riders:
+            part = self.present[rider.name]
+            pose = pose_of(self.world(part))
+            rest = self.rest(part)
+            if trouble := rest.trouble(self.slack):
+                raise PartFault(
+                    f"`{robot}` releases `{on}` with `{part.name}` on it, {trouble}, part at {describe(pose)}"
+                )
+            on_plate = pose_of(part.frame) if part.plate else None
+            self.settled += (
+                PartChange("releases", part.name, pose, rest.on, part.plate, on_plate),
+            )
 
     def _create(self, who: str, kind: PartKind, place: str) -> PartChange:
         pose = self.cell.places[place]
@@ -384,10 +437,47 @@ class Parts:
             if part.name not in rest.on:
                 continue
             carries = True
-            without = self.rest(other, without=part.name)
+            without = self.rest(other, without=(part.name,))
             if not rest.trouble(self.slack) and without.trouble(self.slack):
                 raise PartFault(f"{does}, but `{other.name}` stands on it, {at}")
         return carries
+
+    def _lifted(self, does: str, part: Part, at: str) -> tuple[list[Part], bool]:
+        """What goes along with a part that is taken: what stands on it, and would fall without it.
+
+        Gives also whether others stand on any of these that stay, on something else.
+        """
+        if part.plate in self.turning:
+            verb = self._ground.plates[part.plate].does
+            raise PartFault(f"{does} from `{part.plate}` while that {verb}, {at}")
+        lifted, is_new, carries = {part.name: part}, True, False
+        while is_new:
+            is_new = carries = False
+            for other in list(self.present.values()):
+                if other.holder or other.name in lifted or not self._may_touch(other, lifted):
+                    continue
+                rest = self.rest(other)
+                if lifted.keys().isdisjoint(rest.on):
+                    continue
+                carries = True
+                falls = self.rest(other, without=lifted.keys()).trouble(self.slack)
+                if falls and not rest.trouble(self.slack):
+                    lifted[other.name] = other
+                    is_new = True
+        riders = list(lifted.values())[1:]
+        for rider in riders:
+            if off := [x for x in self.rest(rider).on if x not in lifted]:
+                raise PartFault(f"{does}, but `{rider.name}` stands on it and on `{off[0]}`, {at}")
+        return riders, carries
+
+    def _may_touch(self, other: Part, some: Mapping[str, Part]) -> bool:
+        """Whether a part is so near to one of others that it can stand on it."""
+        place, own = self.world(other)[:3, 3], self._ground.radius(other.kind.name)
+        return any(
+            float(np.linalg.norm(self.world(p)[:3, 3] - place))
+            <= self._ground.radius(p.kind.name) + own + 2.0 * REST_GAP
+            for p in some.values()
+        )
 
     def _plate_under(self, part: Part) -> str:
         """The turntable with which a part turns that stands where it is; "": with none."""
@@ -403,7 +493,7 @@ class Parts:
 
     def _keep(self, part: Part, frame: Array, plate: str) -> Part:
         own = inverse(self._plates[plate]) @ frame if plate else np.asarray(frame)
-        self.present[part.name] = replace(part, frame=own, holder="", plate=plate)
+        self.present[part.name] = replace(part, frame=own, holder="", plate=plate, up=None)
         return self.present[part.name]
 
     def is_seen(self, place: str, kind: str = "") -> bool:

@@ -82,6 +82,19 @@ class Load:
     words: str
 
 
+def together(
+    tool: tuple[str, float, Array] | None, parts: Iterable[tuple[str, float, Array]]
+) -> Load:
+    """A tool with several parts: of each its name, its mass, and where it is in the frame of the flange."""
+    name, own, at = tool or ("", 0.0, np.zeros(3))
+    parts = list(parts)
+    mass = own + sum(m for _, m, _ in parts)
+    middle = own * at + sum((m * np.asarray(x) for _, m, x in parts), np.zeros(3))
+    said = f"its tool `{name}`" if tool else "no tool"
+    words = f"{said} and {', '.join(f'`{n}`' for n, _, _ in parts)}"
+    return Load(mass, np.asarray(middle / mass if mass > 0.0 else at), words)
+
+
 def loads(
     tool: tuple[str, float, Array] | None, T_flange_tcp: Array, kinds: Iterable[PartKind]
 ) -> Iterator[Load]:

@@ -140,6 +140,21 @@ class CellRobot:
                 return f"robot `{self.name}` (`{self.arm.name}`) carries {load.words}, {why}"
         return ""
 
+    def overload_of(self, parts: Iterable[tuple[str, float, Array]]) -> str:
+        """Why it may not carry these together (name, kg, where in the frame of the TCP), in words; "": it may."""
+        rating = self.arm.urdf.rating
+        if rating is None:
+            return ""
+        tool = self.tool
+        own = (tool.name, tool.urdf.mass, tool.urdf.centre) if tool is not None else None
+        frame = self.kinematics.T_flange_tcp
+        load = payload.together(own, ((n, m, (frame @ T)[:3, 3]) for n, m, T in parts))
+        if why := rating.exceeded(load, self.kinematics.alone.wrist_in_flange):
+            return f"it carries {load.words}, {why}"
+        if any(f < p - 1e-9 for f, p in zip(rating.factors(load.mass), self.pace, strict=True)):
+            return f"it carries {load.words}, {load.mass:g} kg, for which its speeds are too high"
+        return ""
+
     @property
     def carrying(self) -> tuple[ExternalAxis, ...]:
         """The axes with which parts go that stand on them: turntables of a robot, those of a device but for jaws."""

@@ -194,6 +194,8 @@ class Table:
         if not isinstance(value, list):
             self.wrong(name, "a list of tables")
             return []
+        if not value and name in self.data and self._key(name).required:
+            self.wrong(name, "a list of at least one table")
         return [self._inner(v, (name, i), inner) for i, v in enumerate(value)]
 
     def _inner(self, data: Any, path: tuple[str | int, ...], keys: Section | None) -> Table:

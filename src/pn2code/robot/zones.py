@@ -11,6 +11,7 @@ every backend knows the same.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
@@ -105,6 +106,21 @@ class ZoneWatch:
         own = np.abs(points @ frame[:3, :3].T + frame[:3, 3])
         half = np.array(self.cell.zones[zone].size) / 2.0
         return np.asarray(np.linalg.norm(np.maximum(own - half, 0.0), axis=-1))
+
+    def in_limited(self, joints: Mapping[str, Array], parts: Iterable[Part]) -> Iterator[str]:
+        """Of which robots and devices something is in a zone where speeds are limited."""
+        parts = tuple(parts)
+        for name, q in joints.items():
+            placed = (corners for _, corners in self.placed(name, q, parts))
+            if any(self._is_in(z, corners) for corners in placed for z in self.limited):
+                yield name
+
+    def _is_in(self, zone: Zone, corners: Array) -> bool:
+        """Whether a box is in a zone; balls around both tell it soon where they are far apart."""
+        middle = (corners[0] + corners[7]) / 2.0
+        away = middle - (zone.pose.x, zone.pose.y, zone.pose.z)
+        across = math.dist(corners[0], corners[7]) + math.hypot(*zone.size)
+        return math.hypot(*away) <= across / 2.0 + _STEP and self.off(zone.name, corners) <= 0.0
 
     def occupied(self, zone: str, joints: Mapping[str, Array], parts: Iterable[Part]) -> bool:
         """Whether an arm, or what it carries, is in a zone."""

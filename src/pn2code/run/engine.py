@@ -28,12 +28,13 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
-from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.clamps import closing, holding, nearest, on_nothing, taken_along
 from pn2code.robot.commands import (
     Command,
     Handling,
     Move,
     MoveCircular,
+    MoveExternal,
     MoveJoint,
     MoveLinear,
     Pose,
@@ -43,6 +44,7 @@ from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
+from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
 from pn2code.robot.zones import ZoneWatch
@@ -492,6 +494,20 @@ class Engine:
         for change in settled:
             self.record.parts.append(PartRecord(self.now, robot.name, change))
 
+    def _expect_part(self, robot: RobotRunner, motion: Motion) -> None:
+        """A clamp that has closed has a part between its jaws, standing there or in a tool."""
+        if robot.arm is None or not isinstance(motion.command, MoveExternal):
+            return
+        device = robot.arm.robot
+        ends = [motion.trajectory.q(t) for t in (0.0, motion.duration)]
+        for held in closing(device, ends[0], ends[1]):
+            self._look_at_turntables()
+            joints = {r.name: r.joints(self.now) for r in self._arms()}
+            there = self.parts.parts.everywhere(joints)
+            near = nearest(self.cell, held, there)
+            if near.off > 0.0:
+                raise CellStoppedError(f"{robot.at(robot.line)}: {on_nothing(held, near)}")
+
     def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
         if robot.arm is None or not isinstance(motion.command, Move):
@@ -603,6 +619,7 @@ class Engine:
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
         self._run_out(robot, motion)
+        self._expect_part(robot, motion)
         if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
             self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)
@@ -681,16 +698,31 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+        self._expect_level(t, joints)
         self._expect_slow(t, joints)
+
+    def _expect_level(self, t: float, joints: Mapping[str, Array]) -> None:
+        """What stands on a part that is carried does not slide off."""
+        present = self.parts.parts.present.values()
+        if all(p.up is None for p in present):
+            return
+        for name, q in joints.items():
+            if why := tilted(self.cell.robot(name), q, present):
+                self.now = t
+                raise CellStoppedError(f"{why}; {self._doing()}")
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""
         if not self.zones.limited:
             return
+        parts = self.parts.parts.present.values()
+        moving = {r.name: r.motion for r in self._arms() if r.motion is not None}
+        there = {name: joints[name] for name in moving}
         speeds = {
-            r.name: r.motion.trajectory.qd(t - r.motion.began) for r in self._arms() if r.motion
+            name: moving[name].trajectory.qd(t - moving[name].began)
+            for name in self.zones.in_limited(there, parts)
         }
-        found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
+        found = self.zones.too_fast({n: joints[n] for n in speeds}, speeds, parts)
         if found is not None:
             self.now = t
             self.record.too_fast = BrokenZone(

@@ -52,6 +52,10 @@ class PartKeeper:
             return change
         if change.effect == "releases":
             self._expect_apart(part.name, f"`{who}` releases `{part.name}`, which")
+            for rider in self.parts.settled:
+                if rider.effect == "releases":
+                    does = f"`{who}` releases `{part.name}` with `{rider.part}` on it, which"
+                    self._expect_apart(rider.part, does)
         elif change.effect == "creates":
             self._expect_apart(
                 part.name, f"`{who}` puts `{part.name}` at `{handling.place}`, which"

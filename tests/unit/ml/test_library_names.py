@@ -82,3 +82,23 @@ def test_colour_sets_with_names_of_the_library() -> None:
         value="Format.base ^^ [q (), AtomMap.numItems AtomMap.empty] ^^ Fifo.base ^^ map Atom.ord [He]",
     )
     assert marking(text) == "1`[1,0,1]"
+
+
+@pytest.mark.parametrize("name", ["col", "tcf", "RealToIntInf"])
+@pytest.mark.parametrize("used", [True, False])
+def test_variables_with_names_of_the_library(name: str, used: bool) -> None:
+    """Inscriptions mean the variable, also where a declaration before it has used what the library has."""
+    use = {"col": "col (1 @ 3)", "tcf": "tcf (1, [1 @ 3])", "RealToIntInf": "RealToIntInf 0 1.5"}
+    text = f"""
+net Variables
+  standard
+  val first = {use[name] if used else "3"};
+  var {name} : INT;
+  page Top
+    place A : INT = 1`1
+    place B : INT
+    trans T
+      in A : {name}
+      out B : {name} + 1
+"""
+    assert not diagnose(text).items

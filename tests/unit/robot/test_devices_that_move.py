@@ -147,9 +147,18 @@ def test_what_is_wrong_with_axes_is_said() -> None:
         ({"door__direction": [0.0, 0.0, 0.0]}, "three numbers, not all of them 0"),
         ({"stand": DATA["devices"]["mill"]["axes"]["door"]}, "are called `stand`"),
         ({"vice_1": DATA["devices"]["mill"]["axes"]["door"]}, "are called `vice_1`"),
+        ({"door__objects": []}, "objects` is `[]`, but a list of at least one table is expected"),
+        ({"vice__may_be_empty": 1}, "`true` or `false` is expected"),
     ):
         cell, said = cell_of(**changed)
         assert cell is None and any(words in e for e in said), (changed, said)
+
+
+def test_a_device_without_axes_has_no_table_of_them() -> None:
+    data: dict[str, Any] = {**DATA, "devices": {"mill": {"instance": "Mill", "axes": {}}}}
+    d = Diagnostics()
+    assert load(data, Path(), nowhere, d) is None
+    assert [e.message for e in d.errors] == ["device `mill` has `axes`, but none is named"]
 
 
 @pytest.mark.parametrize("name", ["scene", "self", "floor"])
@@ -271,7 +280,7 @@ def test_a_part_in_a_clamp_that_is_not_open_cannot_be_taken_away(swept: _Swept) 
 
     shut = planner.standing(planner.home("mill"))
     found = pulled(up, shut)
-    assert found is not None and "pulls `blank` out of `mill/vice`" in touch_in_words(found)
+    assert found is not None and "pulls `blank.1` out of `mill/vice`" in touch_in_words(found)
     opening = planner.leg(planner.home("mill"), MoveExternal((Along("vice", 0.12, True),)))
     assert pulled(up, opening) is not None  # nobody knows how far it is
     assert pulled(up, planner.standing(opening.end)) is None

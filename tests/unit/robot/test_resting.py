@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -18,6 +19,8 @@ from pn2code.robot.commands import Handling, MoveJoint, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.ground import Ground
 from pn2code.robot.parts import Part, PartFault, Parts
+from pn2code.robot.payload import Rating
+from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import Array, matrix_of
@@ -47,8 +50,11 @@ LIFT = {
 }
 
 
-def cell_of(*at: dict[str, float], plate: dict[str, Any] | None = None, **more: Any) -> RobotCell:
+def cell_of(
+    *at: dict[str, float], plate: dict[str, Any] | None = None, mass: float = 0.0, **more: Any
+) -> RobotCell:
     data = tomllib.loads(TOML)
+    data["parts"]["box"]["mass"] = mass
     data["parts"]["box"]["at"] = list(at)
     if plate is not None:
         data["robots"]["robot"]["axes"] = {"plate": plate}
@@ -105,13 +111,68 @@ def test_what_is_released_stands_on_what_is_there_then(x: float, z: float, says:
     assert parts.present["box.2"].holder == "robot"
 
 
-def test_a_part_that_carries_another_is_not_taken() -> None:
-    parts = Parts(cell_of({"x": 1.0, "z": 0.075}, {"x": 1.0, "z": 0.225}))
-    with pytest.raises(PartFault, match=r"takes `box\.1`, but `box\.2` stands on it, at TCP pose"):
+def test_what_stands_on_a_part_that_is_taken_goes_along_and_stands_there_again() -> None:
+    stack = ({"x": 1.0, "z": z} for z in (0.075, 0.225, 0.375))
+    parts = Parts(cell_of(*stack, {"x": 1.3, "z": 0.075}))
+    before = parts.present["box.3"].frame
+    parts.handle("robot", TAKE, above(1.0, 0.0, 0.15))
+    assert [(p.name, p.holder) for p in parts.present.values() if p.holder] == [
+        (f"box.{i}", "robot") for i in (1, 2, 3)
+    ]
+    assert parts.held_by("robot") is parts.present["box.1"]
+    assert [(c.effect, c.part) for c in parts.settled] == [("takes", "box.2"), ("takes", "box.3")]
+    # Put into the air nothing of it is put down.
+    with pytest.raises(PartFault, match="in the air"):
+        parts.handle("robot", RELEASE, above(2.0, 0.0, 0.5))
+    assert all(parts.present[f"box.{i}"].holder for i in (1, 2, 3))
+    parts.handle("robot", RELEASE, above(2.0, 0.5, 0.15))
+    assert [on(parts, f"box.{i}") for i in (1, 2, 3)] == [("floor",), ("box.1",), ("box.2",)]
+    assert [(c.effect, c.part, c.on) for c in parts.settled] == [
+        ("releases", "box.2", ("box.1",)),
+        ("releases", "box.3", ("box.2",)),
+    ]
+    moved = parts.present["box.3"].frame[:3, 3] - before[:3, 3]
+    assert moved == pytest.approx([1.0, 0.5, 0.0], abs=1e-9)
+    assert not any(p.holder for p in parts.present.values())
+
+
+def test_what_is_put_on_a_turntable_with_others_on_it_turns_with_them() -> None:
+    parts = Parts(cell_of({"x": 1.0, "z": 0.075}, {"x": 1.0, "z": 0.225}, plate=PLATE))
+    parts.handle("robot", TAKE, above(1.0, 0.0, 0.15))
+    parts.handle("robot", RELEASE, above(1.5, 0.6, 0.55))
+    assert {p.plate for p in parts.present.values()} == {"robot/plate"}
+    # And a stack that is taken from there stands with nobody any more.
+    parts.handle("robot", TAKE, above(1.5, 0.6, 0.55))
+    assert {(p.plate, p.holder) for p in parts.present.values()} == {("", "robot")}
+
+
+def test_an_arm_carries_no_more_than_it_may_with_all_that_stands_on_a_part() -> None:
+    stack = [{"x": 1.0, "z": 0.075 + 0.15 * i} for i in range(3)]
+    parts = Parts(cell_of(*stack, mass=10.0))
+    robot = parts.cell.robot("robot")
+    rated = replace(robot.arm.urdf, rating=Rating(25.0))
+    robot = replace(robot, arm=replace(robot.arm, urdf=rated))
+    parts.cell = replace(parts.cell, robots=(robot,))
+    message = r"takes `box\.1` with `box\.2` and `box\.3` on it: it carries its tool .* but 25 kg are rated"
+    with pytest.raises(PartFault, match=message):
         parts.handle("robot", TAKE, above(1.0, 0.0, 0.15))
-    parts.handle("robot", TAKE, above(1.0, 0.0, 0.3))
-    parts.handle("robot", RELEASE, above(1.5, 0.0, 0.15))
-    assert parts.handle("robot", TAKE, above(1.0, 0.0, 0.15)).part == "box.1"
+    assert parts.handle("robot", TAKE, above(1.0, 0.0, 0.45)).part == "box.3"
+
+
+def test_what_only_stands_on_a_part_that_is_carried_does_not_lean() -> None:
+    cell = cell_of({"x": 1.2, "z": 0.075}, {"x": 1.2, "z": 0.225})
+    robot, parts = cell.robot("robot"), Parts(cell)
+    executor = RobotExecutor(robot, cell.motion)
+    executor.begin(MoveJoint(Pose(1.2, 0.0, 0.15, math.pi, 0.0, 0.0)), 0.0)
+    executor.finish()
+    parts.handle("robot", TAKE, matrix_of(executor.pose))
+    present = list(parts.present.values())
+    q = np.array(executor.q)
+    assert tilted(robot, q, present) == ""
+    q[4] += math.radians(9.9)
+    assert tilted(robot, q, present) == ""
+    q[4] += math.radians(0.3)
+    assert "`robot` tilts `box.2` by 10.2 deg" in tilted(robot, q, present)
 
 
 def test_of_two_that_carry_a_part_one_may_be_taken_if_the_other_is_beneath_its_middle() -> None:

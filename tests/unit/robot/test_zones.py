@@ -118,6 +118,20 @@ def test_an_arm_and_what_it_carries_are_in_a_zone_and_a_door_is_not() -> None:
     assert watch.occupied("front", over, [held])
 
 
+def test_what_is_in_a_zone_where_speeds_are_limited() -> None:
+    """As for each link by itself; in `far` nothing is limited."""
+    watch = ZoneWatch(CELL)
+    random = np.random.default_rng(5)
+    met = set()
+    for _ in range(60):
+        q = random.uniform(CELL.robot("arm").arm.lower, CELL.robot("arm").arm.upper)
+        is_in = any(watch.off("front", corners) <= 0.0 for _, corners in watch.placed("arm", q, ()))
+        assert list(watch.in_limited({"arm": q}, ())) == ["arm"] * is_in
+        met.add(is_in)
+    assert met == {False, True}
+    assert list(watch.in_limited({"mill": SHUT, "arm": at(0, -900, 1400)}, ())) == ["mill"]
+
+
 def test_what_is_too_fast_is_told_with_its_speed() -> None:
     watch = ZoneWatch(CELL)
     joints = {"mill": SHUT}
@@ -218,6 +232,10 @@ def test_what_a_sensor_sees_is_there(tmp_path: Path) -> None:
         ('sees = "inVice"\nat = 0.1', "`at` says where an axis is seen, but `sees` names none"),
         ('sees = "front"\npart = "blank"', "but `front` is no place"),
         ('sees = "frnt"', "there is no `[places.frnt]`"),
+        ('sees = ""', "`sees` is empty, but the name of a place, a zone or an axis is expected"),
+        ('sees = "inVice"\npart = ""', "`part` is empty, but the name of a kind of parts is exp"),
+        ('file = ""', "`file` is empty, but a file name is expected"),
+        ('sees = "front"\nsays = ""', ""),
         ('sees = "front"', ""),
         ('sees = "mill.door"\nat = 0.9', ""),
     ):

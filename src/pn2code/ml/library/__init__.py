@@ -148,7 +148,7 @@ def _more() -> dict[str, re.Pattern[str]]:
     found = {}
     for path in sorted((FOLDER / "more").glob("*.sml")):
         text = path.read_text(encoding="ascii")
-        own = re.findall(r"^    (?:fun|structure) (\w+)", text, re.MULTILINE)
+        own = re.findall(r"^    (?:fun|structure|val) (\w+)", text, re.MULTILINE)
         members = "|".join(sorted(set(own), key=len, reverse=True))
         found[path.stem] = re.compile(rf"\b{path.stem}\s*\.\s*(?:{members})\b(?!')")
     return found

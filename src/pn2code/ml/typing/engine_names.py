@@ -40,7 +40,7 @@ CPN'Stop CPN'app CPN'bootstrap CPN'build CPN'concat CPN'debug CPN'debug_exn CPN'
 CPN'getMLidentifierPrefix CPN'hd CPN'idebug CPN'inc CPN'inst CPN'map CPN'nth CPN'parse_coderegion
 CPN'report_timing CPN'save_debug_info CPN'start_timing CPN'stop_timing CPN'term_debug CPN'tl
 CPN'underlineSpaces CPN'use Compile ConfidenceIntervalExn DupConnNameExn ElementMissingExn IllegalName
-IntInfToRealExn NotValidDirExn RealToIntInfExn UnsupportedArch all_expr beta_pert canreceive col delay
+IntInfToRealExn NotValidDirExn RealToIntInfExn UnsupportedArch all_expr beta_pert canreceive delay
 dynArray gen_mkstr_ms get_ran hashId hashInt hashIntList hashString illegal_msg_ms import importE input_ms
 input_tms mkstr mkstr_tms model_time name null_str ogpath output_ms output_tms problibrandom rcsid ready reset
 rmipath sort_int_list sort_tms start_time tlegal tleq tlt tod tsub
@@ -60,7 +60,7 @@ Misc.I : *= += -=
 Misc.I : app fold revapp revfold
 Misc.R : *= += -=
 Misc.S : left right
-ModelTime : col mkstr model_time name null null_str ready start_time
+ModelTime : model_time name ready start_time
 OS : syserror
 OS.IO : Poll
 OS.IO.Kind : device dir file pipe socket symlink tty

@@ -1,0 +1,48 @@
+"""Parts have names of their own in the collision library, so that all can be shown at once; people see those of runs.
+
+    held("blank.1", "arm")              # "blank.1.held_by_arm"
+    as_in_runs("arm/blank.1.held_by_arm")               # "arm/blank.1"
+    as_seen(apart)                      # with such names in `where` and in the reason
+
+Of parts of a kind that are handled in the same way the first one is named.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from pn2code.geometry.apart import Apart
+from pn2code.robot.backend import Clearance
+
+_OWN = re.compile(r"(?<=\.)(\d+)(\.held_by_\w+|\.standing|\.on_\w+)")
+
+
+def held(part: str, robot: str) -> str:
+    """Of a part in a tool."""
+    return f"{part}.held_by_{robot}"
+
+
+def on_plate(part: str, plate: str) -> str:
+    """Of a part on a turntable or belt."""
+    return f"{part}.on_{plate.replace('/', '_')}"
+
+
+def standing(part: str) -> str:
+    """Of a part that stands."""
+    return f"{part}.standing"
+
+
+def as_in_runs(text: str) -> str:
+    """A name, or words in which there are some."""
+    return _OWN.sub(r"\1", text)
+
+
+def as_seen(apart: Apart) -> Apart:
+    """How two things keep apart, for people."""
+    return replace(apart, where=gap_as_seen(apart.where), why=as_in_runs(apart.why))
+
+
+def gap_as_seen(gap: Clearance | None) -> Clearance | None:
+    """How near two links come, for people."""
+    return gap and replace(gap, a=as_in_runs(gap.a), b=as_in_runs(gap.b))

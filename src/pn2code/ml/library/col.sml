@@ -1,0 +1,1 @@
+fun col (colour @ _) = colour

@@ -1,0 +1,89 @@
+"""Clamps that must not close on nothing: in runs, and over all that a net permits."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from helpers.door_cell import TOML
+from helpers.robot_cells import nowhere
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.legs import Planner
+from pn2code.robot.clamps import closes, closing, nearest, on_nothing
+from pn2code.robot.commands import Along, MoveExternal
+from pn2code.robot.parts import Part
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.scene import load
+from pn2code.robot.transforms import matrix_of
+
+
+def cell_of(more: str = "", at: str = "{ x = 1.0, z = 0.675 }") -> RobotCell:
+    """The mill with a blank in its vice, which is open."""
+    toml = TOML.replace("home = 0.04", "home = 0.12").replace(
+        "at = [{ y = -0.9, z = 0.575 }]", f"at = [{at}]"
+    )
+    assert toml.count(at) == 1
+    d = Diagnostics()
+    data: dict[str, Any] = tomllib.loads(
+        toml.replace('holds = "inVice"', f'holds = "inVice"{more}')
+    )
+    found = load(data, Path(), nowhere, d)
+    assert found is not None, [e.message for e in d.errors]
+    return found
+
+
+def grasp(gap: float) -> MoveExternal:
+    return MoveExternal((Along("vice", gap, True),))
+
+
+def closed(cell: RobotCell, *gaps: float) -> Any:
+    """What the mill comes to that lets its vice go to these gaps."""
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("mill")
+    return doing.of("mill", tuple(map(grasp, gaps)), home, doing.start, (home,))
+
+
+def test_only_moves_that_close_it_matter() -> None:
+    mill = cell_of().robot("mill")
+    open_, half, shut = (np.array([0.0, g / 2.0, g / 2.0]) for g in (0.12, 0.07, 0.06))
+    assert [h.name for h in closing(mill, open_, shut)] == ["mill/vice"]
+    assert [h.name for h in closing(mill, half, shut)] == ["mill/vice"]
+    for before, after in ((shut, open_), (shut, half), (shut, shut)):
+        assert not list(closing(mill, before, after))
+    assert closes(mill, grasp(0.06))
+    assert not closes(mill, MoveExternal((Along("door", 0.9, True),)))
+    free = cell_of("\nmay_be_empty = true").robot("mill")
+    assert not closes(free, grasp(0.06)) and not list(closing(free, open_, shut))
+
+
+def test_what_it_closes_on_is_as_near_as_can_be_gripped() -> None:
+    cell = cell_of()
+    (held,) = closing(cell.robot("mill"), np.array([0.0, 0.06, 0.06]), np.array([0.0, 0.03, 0.03]))
+    blank = cell.parts["blank"]
+    spot = matrix_of(cell.places["inVice"])
+    for off, is_there in ((0.0, True), (0.0049, True), (0.0051, False)):
+        frame = spot.copy()
+        frame[1, 3] += off
+        near = nearest(cell, held, [(Part("blank.1", blank, frame), frame)])
+        assert (near.off <= 0.0) is is_there, off
+    assert on_nothing(held, near) == (
+        "`mill/vice` closes on nothing: no part is at `inVice`; the nearest, `blank.1`, is 5.1 mm away"
+    )
+    assert on_nothing(held, nearest(cell, held, [])).endswith("no part is at `inVice`")
+
+
+def test_over_all_states_it_closes_on_a_part() -> None:
+    found = closed(cell_of(), 0.0598)
+    assert not found.fault and not found.doubt
+    assert found.kinds == {"blank"} and found.handled and not found.leans
+    away = closed(cell_of(at="{ y = -0.9, z = 0.575 }"), 0.12, 0.0598)
+    assert away.is_part and away.fault.startswith(
+        "`mill/vice` closes on nothing: no part is at `inVice`; "
+    )
+    assert not closed(cell_of("\nmay_be_empty = true", "{ y = -0.9, z = 0.575 }"), 0.0598).fault
+    nearly = closed(cell_of(at="{ x = 1.005, z = 0.675 }"), 0.0598)
+    assert not nearly.fault and "as much as is permitted" in nearly.doubt
