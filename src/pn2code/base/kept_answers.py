@@ -17,6 +17,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import stat
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -36,10 +37,15 @@ MOST = 256
 """Answers that are kept; the ones that were not asked for the longest time go first."""
 _PACKAGE = Path(__file__).resolve().parents[1]
 _SOURCES = frozenset({".py", ".c", ".h", ".j2", ".lark", ".sml", ".toml"})
-_LIBRARIES = ("numpy", "pybullet", "lxml", "lark", "jinja2")
+_LIBRARIES = (
+    "numpy", "scipy", "flint", "ruckig", "py_opw_kinematics", "eaik", "pybullet", "lxml", "lark", "jinja2",
+)  # fmt: skip
 _TICK_NS = 20_000_000
-"""Dates of files are this coarse at most on the file systems that are looked at."""
-
+"""The clock of the dates of files may be this late."""
+_COARSE_NS = 2_000_000_000
+"""It is this late at most where the file system keeps whole seconds, or every other one."""
+_MOST_LINKS = 40
+"""That follow each other."""
 
 _LOADED_NS = time.time_ns()
 """A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
@@ -78,12 +84,14 @@ class KeptAnswers:
         return Question(self.folder / f"{name}-{digest.hexdigest()[:40]}.json", self.is_settled)
 
     def is_settled(self, path: Path) -> bool:
-        """Whether a file has been as it is since before the command began."""
+        """Whether a file has been as it is since before the command began, and the links that lead to it, too."""
         try:
-            status = path.stat()
+            dates = [*_dates(path.stat()), *_dates_of_links(os.fspath(path.absolute()))]
         except OSError:
             return False
-        return max(status.st_mtime_ns, status.st_ctime_ns) + _TICK_NS < self._begun
+        return all(
+            date + (_TICK_NS if date % 10**9 else _COARSE_NS) < self._begun for date in dates
+        )
 
     @cached_property
     def _makers(self) -> bytes:
@@ -116,13 +124,14 @@ class Question:
                 return None  # the file is damaged
             kept = json.loads(body)
             is_same = all(self._digest(Path(p)) == digest for p, digest in kept["files"].items())
-        except (OSError, ValueError):
-            return None
+            answer = kept["answer"]
+        except (OSError, ValueError, TypeError, LookupError, AttributeError, RecursionError):
+            return None  # there is none, or none that was written here
         if not is_same:
             return None
         with suppress(OSError):
             os.utime(self.file)
-        return kept["answer"]
+        return answer
 
     def keep(self, answer: object, files: Iterable[Path]) -> None:
         """Keeps an answer, if all files that it was made from are there and have not changed meanwhile."""
@@ -142,6 +151,23 @@ class Question:
             return hashlib.sha256(path.read_bytes()).hexdigest()
         except OSError:
             return None
+
+
+def _dates(status: os.stat_result) -> tuple[int, int]:
+    return status.st_mtime_ns, status.st_ctime_ns
+
+
+def _dates_of_links(path: str, most: int = _MOST_LINKS) -> Iterator[int]:
+    """Those of each symbolic link on the way to a file: what it leads to may be older than the link."""
+    while True:
+        status = os.lstat(path)
+        folder = os.path.dirname(path)  # noqa: PTH120 - it is asked for many files
+        if stat.S_ISLNK(status.st_mode) and most:
+            yield from _dates(status)
+            yield from _dates_of_links(os.path.join(folder, os.readlink(path)), most - 1)  # noqa: PTH115, PTH118
+        if folder == path:
+            return
+        path = folder
 
 
 def _sources(folder: str) -> Iterator[tuple[str, int, int]]:
