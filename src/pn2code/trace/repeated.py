@@ -119,7 +119,6 @@ class Repeated:
             places[place] = MultiSet(counts)
         game.marking = replace(game.marking, places=tuple(places))
         game.steps += 1
-        game.evaluator.steps = game.steps
         return {**known.line, "step": int(found[1])}, known.occurred
 
 
