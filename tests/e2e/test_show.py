@@ -163,6 +163,10 @@ def test_a_damaged_description_is_refused(
         (f'"end":{data["end"]}', '"end":NaN', "`NaN` is no number of JSON"),
         (f'"end":{data["end"]}', '"end":1e999', "the number `1e999` is too large"),
         (packed, "AAAA", "the description of a run is damaged: not a packed array"),
+        ('"refused":null', '"refused":[1]', "its `course.refused` does not say which step"),
+        ('"refused":null', '"refused":{"step":"x","transition":"T","why":""}', "`course.refused`"),
+        ('"steps":20', '"steps":2000', "its `course.steps` is not the number of its steps"),
+        ('"final":[]', '"final":"Top.A"', "its `verdict.final` is no list of names"),
     ):
         assert old in whole
         described.write_text(whole.replace(old, new, 1), encoding="utf-8")

@@ -68,8 +68,15 @@ def sentences(found: Json) -> list[str]:
             continue
         number = f" {one['step']}" if kind == "step" else ""
         first = "other end" if kind == "end" else f"first other {kind}{number}"
-        rows.append(f"{first}: {one['what'][0]}; in the second run {one['what'][1]}")
+        here, there = map(_short, one["what"])
+        rows.append(f"{first}: {here}; in the second run {there}")
     return [*(rows or [found["same"]]), *found["notes"]]
+
+
+def _short(text: str) -> str:
+    """For a terminal: what values and messages say is data, and no commands for it."""
+    plain = "".join(c if c.isprintable() else "\ufffd" for c in text[:LONGEST])
+    return plain if len(text) <= LONGEST else f"{plain}… ({len(text) - LONGEST:,} more characters)"
 
 
 def _notes(a: Json, b: Json) -> Iterator[str]:

@@ -157,3 +157,11 @@ def test_what_is_shown_shortened_is_compared_shortened(
     said = sentences(differences(*runs))
     assert said[0] == "both runs have the same steps"
     assert [line.startswith("values are compared as") for line in said[1:]] == [True] * is_rounded
+
+
+def test_what_runs_say_is_no_command_for_the_terminal(many: Path) -> None:
+    odd = shown(many)
+    odd["verdict"]["reason"] = "\x1b[2J\u202ex" + "y" * 10_000_000
+    (said,) = sentences(differences(shown(many), odd))
+    assert said.isprintable() and len(said) < 10_000
+    assert "in the second run steps: \ufffd[2J\ufffdxyyy" in said and "more characters" in said
