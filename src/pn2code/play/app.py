@@ -106,8 +106,7 @@ class _Hall:
         loop = asyncio.get_running_loop()
         letters = Letters(loop)
         seat.tell = tell = letters.put
-        seat.player.again()
-        state = await loop.run_in_executor(seat.worker, seat.player.view.state)
+        state = await loop.run_in_executor(seat.worker, seat.player.again)
         await socket.send_text(text_of({"seat": seat.name, "new": is_new, "state": state}))
         sending = asyncio.create_task(_send_all(socket, letters))
         over = asyncio.create_task(letters.over.wait())
@@ -215,7 +214,14 @@ class _Hall:
             said = f"a trace may have {MOST_TRACE >> 20} MB; `--trace FILE` reads longer ones"
             return JSONResponse({"ok": False, "message": said, "rows": []}, 413)
         loop = asyncio.get_running_loop()
-        done = await loop.run_in_executor(seat.worker, seat.player.load, file)
+
+        def work() -> Json:
+            # The page is told by its WebSocket, in order with what else it is told.
+            done = seat.player.load(file)
+            seat.tell({"state": done.pop("state"), "isWhole": True})
+            return done
+
+        done = await loop.run_in_executor(seat.worker, work)
         remove = BackgroundTask(file.unlink, missing_ok=True)
         return Response(text_of(done), media_type="application/json", background=remove)
 

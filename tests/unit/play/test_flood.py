@@ -43,8 +43,7 @@ def test_a_page_that_does_not_read_is_parted_from(
     monkeypatch.setattr(letters, name, most)
     page = Deaf()
     with ThreadPoolExecutor(1) as worker:
-        view = SimpleNamespace(state=dict)
-        player = SimpleNamespace(again=lambda: None, view=view)
+        player = SimpleNamespace(again=dict)
         seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
         hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
         asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]
@@ -78,8 +77,7 @@ def test_a_page_that_only_waits_is_parted_from_as_well(monkeypatch: pytest.Monke
     monkeypatch.setattr(letters, "MOST_CHARACTERS", 3000)
     page = Silent()
     with ThreadPoolExecutor(1) as worker:
-        view = SimpleNamespace(state=dict)
-        player = SimpleNamespace(again=lambda: None, view=view)
+        player = SimpleNamespace(again=dict)
         seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
         hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
         asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]

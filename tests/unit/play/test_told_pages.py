@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
+import json
 import random
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from starlette.websockets import WebSocketDisconnect
 
 from helpers.played import session
-from pn2code.play import saving
+from pn2code.play import app, saving
 from pn2code.play.commands import Player
 from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble
@@ -96,8 +102,7 @@ class Page:
     def do(self, command: str, chance: random.Random, folder: Path) -> None:
         game, player = self.player.session, self.player
         if command == "again":
-            player.again()
-            self.hear(player.view.state())
+            self.hear(player.again())
             return
         if command == "load":
             trace = folder / "saved.trace.jsonl"
@@ -163,3 +168,39 @@ def test_after_an_exception_the_number_of_steps_is_as_before(tmp_path: Path) -> 
         game.fire_any(0)
     assert View(game).state()["enabled"] == [0]
     assert game.evaluate("step ()")[1] == "2"
+
+
+def test_a_page_that_is_loaded_again_while_something_goes_on_is_told_everything(
+    tmp_path: Path,
+) -> None:
+    """The answer to the page before, which nobody reads any more, does not count as told."""
+    game = session(tmp_path, COUNTS)
+    player, gate = Player(game, lambda said: None), threading.Event()
+
+    class Reloaded:
+        first: dict[str, Any] = {}
+
+        async def send_text(self, text: str) -> None:
+            self.first = self.first or json.loads(text)
+
+        async def receive_text(self) -> str:
+            raise WebSocketDisconnect
+
+    def going_on() -> None:
+        assert gate.wait(60)
+        player.answer({"do": "fire", "transition": 0})
+
+    async def reload(worker: ThreadPoolExecutor) -> Reloaded:
+        page, hall = Reloaded(), app._Hall(SimpleNamespace())  # type: ignore[arg-type]
+        worker.submit(going_on)
+        seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
+        playing = asyncio.create_task(hall._at(page, seat, False))  # type: ignore[arg-type]
+        await asyncio.sleep(0)  # it has come
+        gate.set()
+        await playing
+        return page
+
+    with ThreadPoolExecutor(1) as worker:
+        state = asyncio.run(reload(worker)).first["state"]
+    assert state["steps"] == 1 and state["enabled"] == [0]
+    assert [state["places"]["0"]] == [[1, "1`2"]]
