@@ -124,6 +124,18 @@ def test_of_a_run_with_less_steps_shown_the_rest_is_not_compared(many: Path) -> 
     assert differences(shown(fewer), part)["step"]["step"] == 5
 
 
+def test_a_trace_that_says_it_is_cut_is_not(many: Path) -> None:
+    lines = many.read_text().splitlines()
+    fewer = many.with_name("b.trace.jsonl")
+    head = lines[0].replace('"by": "reference"', '"by": "supervisor"')
+    fewer.write_text("\n".join([head, *lines[1:5], lines[-1].replace('"steps"', '"cut"')]))
+    other = shown(fewer)
+    assert other["course"]["refused"] is None
+    found = differences(shown(many), other)
+    assert found["step"]["step"] == 5 and found["step"]["what"][1] == "the run has ended"
+    assert found["end"] is not None and not found["notes"]
+
+
 def test_another_end_is_said(many: Path) -> None:
     found = differences(shown(many), shown(changed(many, '"why": "steps"', '"why": "interrupted"')))
     assert found["step"] is None
