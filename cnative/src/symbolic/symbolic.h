@@ -154,7 +154,7 @@ void sy_make_events(sy_diagrams_t *d);
 
 /* What a path makes of a set, as far as it lies in `within`. */
 sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t path);
-/* What all transitions that change something make of a set, once, as far as it lies in `within`, which is not SY_ANY. */
+/* What all transitions that change something make of a set, once, as far as it lies in `within` (not SY_ANY). */
 sy_node_t sy_step_of_all(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 /* A set with all that transitions make of it, again and again, as far as that lies in `within`. */
 sy_node_t sy_saturated(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * symbolic_always.c - the markings from which a path stays in a set for ever, or to its end: EG.
  *
- * Whatever leads within the set to a dead marking, or to a cycle, is such a marking, and saturation finds all of them at
- * once. Of the rest those are lost, again and again, from which no transition leads to another one of the rest. Between,
- * after one, two, four and so on of these steps, a cycle is looked for in the rest: from a marking on to what cannot
- * come back to it, until all that is reached can (a terminal strongly connected component of the rest).
+ * Whatever leads within the set to a dead marking, or to a cycle, is such a marking, and saturation finds all of
+ * them at once. Of the rest those are lost, again and again, from which no transition leads to another one of the
+ * rest. Between, after one, two, four and so on of these steps, a cycle is looked for in the rest: from a marking on
+ * to what cannot come back to it, until all that is reached can (a terminal strongly connected component of the rest).
  */
 #include "symbolic.h"
 
