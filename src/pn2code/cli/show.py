@@ -108,13 +108,23 @@ def show(
     typer.echo(f"{output}: {_sentence(shown, texts[output])}")
     for sentence in said:
         typer.echo(sentence)
-    if refused := shown["course"].get("refused"):
-        typer.echo(
-            f"pn2code: the trace is shown to step {refused['step'] - 1}: the next is not possible in this net "
-            f"({refused['transition']}: {refused['why']})",
-            err=True,
-        )
+    runs = ((shown, "trace"),) if other is None else ((shown, "first run"), (other, "second run"))
+    possible = [_is_possible(one, word) for one, word in runs]
+    if not all(possible):
         raise typer.Exit(Exit.MODEL)
+
+
+def _is_possible(shown: Json, word: str) -> bool:
+    """Whether the net permits all steps; says which is the first that it does not."""
+    refused = shown["course"].get("refused")
+    if not refused:
+        return True
+    typer.echo(
+        f"pn2code: the {word} is shown to step {refused['step'] - 1}: the next is not possible in this net "
+        f"({refused['transition']}: {refused['why']})",
+        err=True,
+    )
+    return False
 
 
 def _names(one: Path, other: Path) -> tuple[str, str]:

@@ -26,6 +26,8 @@ TYPES = {
 
 
 _LONG = 1 << 17
+MOST_NUMBERS = 1 << 28
+"""Of an array that is unpacked."""
 
 
 class NotPacked(ValueError):  # noqa: N818
@@ -74,11 +76,22 @@ def unpacked(data: Packed) -> Numbers:
         NotPacked: the data are none.
     """
     try:
-        raw = zlib.decompress(base64.b64decode(data["deflate"], validate=True))
-        array = np.frombuffer(raw, TYPES[data["type"]])
-        wanted = data["length"]
+        wanted, kind = int(data["length"]), np.dtype(TYPES[data["type"]])
+        if not 0 <= wanted <= MOST_NUMBERS:
+            raise NotPacked(f"a packed array says that it has {wanted} numbers")
+        unpacking = zlib.decompressobj()
+        # Not more than it says: of a few bytes zlib makes gigabytes.
+        raw = unpacking.decompress(
+            base64.b64decode(data["deflate"], validate=True), (wanted + 1) * kind.itemsize
+        )
+        if not unpacking.eof and len(raw) <= wanted * kind.itemsize:
+            raise NotPacked("not a packed array: it is cut off")
+        array = np.frombuffer(raw, kind)
+    except NotPacked:
+        raise
     except (KeyError, TypeError, ValueError, zlib.error) as problem:
         raise NotPacked(f"not a packed array: {problem}") from None
     if array.size != wanted:
-        raise NotPacked(f"a packed array has {array.size} numbers, but says {wanted}")
+        more = " or more" if array.size > wanted else ""
+        raise NotPacked(f"a packed array has {array.size} numbers{more}, but says {wanted}")
     return array

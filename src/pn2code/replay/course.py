@@ -17,13 +17,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from pn2code.base.readable import readable
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import FlatNet
 from pn2code.replay.arrays import packed, packed_reals
 from pn2code.semantics.game.constant import constant_transitions
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking, variable_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import TEXTS
-from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.data import Data, Timed, Value, real_text
 from pn2code.semantics.values.multiset import MultiSet
 
 LONGEST = 4000
@@ -44,6 +45,13 @@ class Course:
         self._texts: dict[str, int] = {}
         self._tokens: list[dict[Token, int]] = [{} for _ in net.places]
         self._token_place = array.array("q")
+        self._is_rounded = False
+        self._reals = frozenset(
+            s.uid
+            for t in net.transitions
+            for s in t.variables
+            if may_hold_reals(s.type, net.program.datatypes)
+        )
         self._before: tuple[PlaceMarking, ...] = ()
         self._time = array.array("d")
         self._clock = array.array("d")
@@ -157,10 +165,13 @@ class Course:
         return known[token]
 
     def _value(self, transition: int, symbol: Any, value: Value) -> int:
+        if symbol.uid in self._reals and not self._is_rounded:
+            self._is_rounded = _is_rounded(value)
         return self._text(variable_text(TEXTS, symbol, value))
 
     def _text(self, text: str) -> int:
         if len(text) > LONGEST:
+            self._is_rounded = True
             text = f"{text[:LONGEST]}… ({len(text) - LONGEST:,} more characters)"
         return self._texts.setdefault(text, len(self._texts))
 
@@ -186,6 +197,7 @@ class Course:
             },
             "tokens": rows,
             "texts": list(self._texts),
+            "rounded": self._is_rounded,
         }
 
     def _order(self) -> tuple[Any, dict[str, Any]]:
@@ -202,6 +214,7 @@ class Course:
                 value, stamp = token
                 return keys[value], -stamp if stamp is not None else 0
 
+            self._is_rounded = self._is_rounded or any(map(_is_rounded, own))
             for token in sorted(own, key=position):
                 order[own[token]] = len(place_of)
                 value, stamp = token
@@ -216,6 +229,18 @@ class Course:
             "text": packed(_numbers(text_of)),
             "stamp": packed(_numbers(stamp_of)),
         }
+
+
+def _is_rounded(value: Any) -> bool:
+    """Whether a value has a real that its text does not tell from all others."""
+    match value:
+        case float():
+            return value == value and float(real_text(value).replace("~", "-")) != value
+        case tuple():
+            return any(map(_is_rounded, value))
+        case Data(argument=argument):
+            return argument is not None and _is_rounded(argument)
+    return False
 
 
 def _numbers(values: array.array[Any]) -> Any:

@@ -89,6 +89,25 @@ def problem_of(data: Any) -> str | None:
         for name in names:
             if name not in data[part]:
                 return f"is incomplete: its `{part}.{name}` is missing"
+    return _damaged(data)
+
+
+def _damaged(data: Json) -> str | None:
+    """Which of the members that are said in words is not of its form."""
+    course, final = data["course"], data["verdict"].get("final", [])
+    steps, rows = course["steps"], course["transition"]
+    if not isinstance(rows, dict) or type(steps) is not int or steps != rows.get("length"):
+        return "is damaged: its `course.steps` is not the number of its steps"
+    if not isinstance(final, list) or not all(isinstance(name, str) for name in final):
+        return "is damaged: its `verdict.final` is no list of names"
+    refused = course.get("refused")
+    if refused is not None and not (
+        isinstance(refused, dict)
+        and type(refused.get("step")) is int
+        and isinstance(refused.get("transition"), str)
+        and isinstance(refused.get("why"), str)
+    ):
+        return "is damaged: its `course.refused` does not say which step, and why"
     return None
 
 

@@ -72,7 +72,7 @@ def describe(
         "clock": "steps" if counts else "seconds",
         "end": float(course.steps) if counts else max(reader.latest, 0.0),
         "verdict": {
-            "word": "cut" if reader.is_cut else str(end.get("why", "")),
+            "word": "cut" if reader.is_cut else _word(end),
             "reason": str(end.get("reason", "")),
             "final": [str(p) for p in end.get("final", ())],
         },
@@ -124,6 +124,12 @@ def _refusal(result: ReplayResult) -> Json | None:
     if result.ok:
         return None
     return {"step": result.steps + 1, "transition": result.transition, "why": result.why}
+
+
+def _word(end: Json) -> str:
+    """Why a trace says that it ended; that steps are left out is for us to say."""
+    why = str(end.get("why", ""))
+    return '"cut"' if why == "cut" else why
 
 
 class _Lines:

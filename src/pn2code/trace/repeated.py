@@ -16,9 +16,9 @@ from dataclasses import replace
 from typing import Any
 
 from pn2code.base.frozen import frozen
-from pn2code.net.flat import ArcKind, FlatNet
+from pn2code.net.flat import ArcKind, BindTerm, FlatNet, FlatTransition
 from pn2code.semantics.game.constant import constant_transitions
-from pn2code.semantics.game.marking import BindingElement, PlaceMarking
+from pn2code.semantics.game.marking import Binding, BindingElement, PlaceMarking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Value, zero_signs
 from pn2code.semantics.values.multiset import MultiSet
@@ -68,6 +68,8 @@ class Repeated:
         if len(self._known) >= MOST:
             self._known.clear()
         game, binding = self._game, occurred.binding
+        if not self._takes_what_binds(t, binding):
+            return
         takes: dict[int, list[tuple[Value, int]]] = {}
         puts: dict[int, list[tuple[Value, int]]] = {}
         for demand in game.enabling.demands(t, binding):
@@ -80,6 +82,19 @@ class Repeated:
         places = dict.fromkeys((*takes, *puts))
         changes = tuple((p, tuple(takes.get(p, ())), tuple(puts.get(p, ()))) for p in places)
         self._known[found[2]] = _Known(line, occurred, changes)
+
+    def _takes_what_binds(self, t: FlatTransition, binding: Binding) -> bool:
+        """Whether each token from which variables get their values is taken: of 0`n one has to be there, none is."""
+        for step in t.plan:
+            if isinstance(step, BindTerm):
+                inscription = t.arcs[step.arc].inscription
+                assert inscription is not None, "it has a pattern"
+                n: Any = self._game.evaluator.value(
+                    inscription.terms[step.term].coefficient, binding
+                )
+                if n <= 0:
+                    return False
+        return True
 
     def repeat(self, text: str) -> tuple[Mapping[str, Any], BindingElement] | None:
         """Makes the step of a line again; None, and nothing has happened: it has to be looked at."""
@@ -104,7 +119,6 @@ class Repeated:
             places[place] = MultiSet(counts)
         game.marking = replace(game.marking, places=tuple(places))
         game.steps += 1
-        game.evaluator.steps = game.steps
         return {**known.line, "step": int(found[1])}, known.occurred
 
 

@@ -174,12 +174,17 @@ def _not_dead(game: Game) -> str | None:
 
 def _raises(game: Game) -> bool:
     """Whether the search for what is enabled, or an occurrence, raises an exception."""
+    done = game.steps
     try:
         marking = game.advance_time(game.marking)
-        for element in game.enabled_in(marking):
+        enabled = game.enabled_in(marking)
+        game.evaluator.steps = done + 1  # an occurrence counts while it occurs
+        for element in enabled:
             game.occur(marking, element)
     except GameError:
         return True
+    finally:
+        game.steps = done
     return False
 
 

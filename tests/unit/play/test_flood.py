@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from pn2code.play import app
+from pn2code.play import app, letters
+from pn2code.trace.json_text import is_deep
 
 
 class Deaf:
@@ -34,13 +36,55 @@ class Deaf:
         self.closed = code
 
 
-def test_a_page_that_does_not_read_is_parted_from(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app, "MOST_LETTERS", 50)
+@pytest.mark.parametrize(("name", "most"), [("MOST_LETTERS", 50), ("MOST_CHARACTERS", 3000)])
+def test_a_page_that_does_not_read_is_parted_from(
+    monkeypatch: pytest.MonkeyPatch, name: str, most: int
+) -> None:
+    monkeypatch.setattr(letters, name, most)
     page = Deaf()
     with ThreadPoolExecutor(1) as worker:
-        view = SimpleNamespace(state=dict)
-        player = SimpleNamespace(again=lambda: None, view=view)
+        player = SimpleNamespace(again=dict)
         seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
         hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
         asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]
     assert page.closed == 1008 and page.said < 100
+
+
+def test_what_was_read_does_not_count() -> None:
+    async def spoken() -> int:
+        page = letters.Letters(asyncio.get_running_loop())
+        for _ in range(40):
+            page.put({"text": "x" * (letters.MOST_CHARACTERS // 20)})
+            await page.next()
+        assert not page.over.is_set()
+        for _ in range(40):
+            page.put({"text": "x" * (letters.MOST_CHARACTERS // 20)})
+        await page.over.wait()
+        return page._waiting.qsize()
+
+    assert asyncio.run(spoken()) < 20
+
+
+def test_a_page_that_only_waits_is_parted_from_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Silent(Deaf):
+        async def receive_text(self) -> str:
+            self.said += 1
+            if self.said > 1:
+                seat.tell({"text": "x" * 5000})
+                await asyncio.Event().wait()
+            return "nonsense"
+
+    monkeypatch.setattr(letters, "MOST_CHARACTERS", 3000)
+    page = Silent()
+    with ThreadPoolExecutor(1) as worker:
+        player = SimpleNamespace(again=dict)
+        seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
+        hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
+        asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]
+    assert page.closed == 1008
+
+
+def test_deep_messages_are_told_from_long_ones() -> None:
+    assert is_deep('{"do": ' + "[" * 60_000)
+    long = json.dumps({"do": "edit", "text": '["{' * 60_000})
+    assert not is_deep(long)

@@ -14,9 +14,11 @@ from helpers.shown import PAIR, opened, recorded
 from pn2code.net.flat import FlatNet
 from pn2code.replay import trace as traces
 from pn2code.semantics.game.constant import constant_transitions
+from pn2code.semantics.game.token_game import Game
 from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay import replay
+from pn2code.trace.token_game import header, occurrence
 
 ROUND = PAIR.replace("[n < 40]", "").replace("out Out : n + 1", "out Out : (n + 1) mod 3")
 
@@ -111,6 +113,37 @@ def test_what_depends_on_more_than_the_binding_is_looked_at() -> None:
     """)
     names = {net.transitions[i].short for i in constant_transitions(net)}
     assert names == {"Plain"}
+
+
+@pytest.mark.parametrize("coefficient", ["0", "~1", "none"])
+def test_a_token_that_binds_and_is_not_taken_has_to_be_there(
+    coefficient: str, tmp_path: Path
+) -> None:
+    net = flat(f"""
+    net Seeing
+      standard
+      val none = 0;
+      var n : INT;
+      page Top
+        place A : INT = 1`1
+        place B : UNIT = 5`()
+        trans Sees
+          in A : {coefficient}`n
+          in B : ()
+        trans Takes
+          in A : n
+    """)
+    game = Game(net)
+    lines = [json.dumps(header(game))]
+    for short in ("Sees", "Sees", "Sees", "Takes"):
+        element = next(e for e in game.enabled() if net.transitions[e.transition].short == short)
+        lines.append(json.dumps(occurrence(game, game.fire(element))))
+    lines.append(lines[1].replace('"step": 1,', '"step": 5,'))
+    trace = tmp_path / "a.trace.jsonl"
+    trace.write_text("\n".join(lines))
+    result = replay(trace, net)
+    assert not result.ok and result.steps == 4
+    assert "no token in place `Top.A` matches" in result.why
 
 
 def test_where_a_lasso_goes_back_to_is_read_first(trace: Path) -> None:
