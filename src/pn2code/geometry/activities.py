@@ -431,7 +431,7 @@ class Doing:
 
         found, faults = _tried(contents, doing.standing, handle)
         change, parts = found[0]
-        does = f"`{doing.owner}` {doing.handling.effect} `{change.part}` beside a turntable"
+        does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
         return after, self._expect_apart(doing, change, parts) or doubt
 

@@ -81,7 +81,7 @@ class Parts:
 
     Args:
         turning: turntables that turn just now, on which nothing can be handled.
-        slack: m, by how much what a part stands on may be off from what is asked for.
+        slack: m, by how much a part that is handled, and what it stands on, may be off from what is asked for.
         settled: parts that now turn with another turntable, or with none, because of what was taken away last.
     """
 
@@ -306,9 +306,9 @@ class Parts:
         if not standing:
             raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
         offs = {p.name: _off(kind, self.world(p), tcp) for p in standing}
-        near = min(standing, key=lambda p: offs[p.name])
+        near = self._nearest([(*offs[p.name], p) for p in standing])
         way, turn = offs[near.name]
-        if way > kind.tolerance or turn > kind.angle:
+        if way > kind.tolerance + self.slack or turn > kind.angle + self.slack:
             off = f"{1000.0 * way:.1f} mm"
             off += f" and {math.degrees(turn):.1f} deg" if turn > kind.angle else ""
             raise PartFault(
@@ -507,14 +507,25 @@ class Parts:
         )
 
     def _at(self, place: str, kind: PartKind) -> Part | None:
-        """The part that stands at a place: those of the kind first."""
+        """The part that stands at a place: those of the kind first, the nearest of them."""
         spot = matrix_of(self.cell.places[place])
-        near = [
-            p
+        offs = [
+            (difference(self.world(p), spot)[0], 0.0, p)
             for p in self.present.values()
-            if not p.holder and difference(self.world(p), spot)[0] <= p.kind.tolerance
+            if not p.holder
         ]
-        return min(near, key=lambda p: p.kind is not kind, default=None)
+        near = [x for x in offs if x[0] <= x[2].kind.tolerance + self.slack]
+        own = [x for x in near if x[2].kind is kind]
+        return self._nearest(own or near) if near else None
+
+    def _nearest(self, offs: list[tuple[float, float, Part]]) -> Part:
+        """The part that is nearest (m), of these the one that is turned least (rad).
+
+        With more slack the last one that is as near: where that matters, what is done comes to something else.
+        """
+        best = min(x[:2] for x in offs)
+        same = [p for *off, p in offs if off[0] - best[0] <= max(self.slack, 0.0)]
+        return same[-1] if self.slack > 0.0 else next(p for *off, p in offs if tuple(off) == best)
 
     def _add(self, kind: PartKind, frame: Array) -> Part:
         part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, np.asarray(frame))
