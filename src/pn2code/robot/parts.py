@@ -258,6 +258,12 @@ class Parts:
                     f"{does} its middle is {1000.0 * off:.1f} mm beyond the end, "
                     f"where nothing takes it further{other}, part at {where}"
                 )
+            if running := sorted(self.turning.intersection(rest.on)):
+                where = describe(pose_of(self.world(part)))
+                raise PartFault(
+                    f"`{part.plate}` takes `{part.name}` along onto `{running[0]}` while that "
+                    f"{self._ground.plates[running[0]].does}, part at {where}"
+                )
         self._settle_again()
 
     def _beyond(self, plate: str, part: Part) -> float:

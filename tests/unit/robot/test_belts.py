@@ -262,6 +262,17 @@ def test_a_belt_takes_nothing_along_that_has_left_it(way: float) -> None:
     assert doing.of("feeder", (run(0.7),), home, doing.start, (home,)).doubt
 
 
+def test_a_belt_takes_nothing_onto_another_one_that_runs() -> None:
+    cell = two_belts(0.6)
+    parts = Parts(cell)
+    parts.stand("feeder", np.array([0.69, 0.0]))
+    parts.turning = frozenset({"feeder/away"})
+    with pytest.raises(
+        PartFault, match="`feeder/belt` takes `box.1` along onto `feeder/away` while that runs"
+    ):
+        parts.run_out({"feeder/belt"})
+
+
 # --- lines of belts ------------------------------------------------------------------------------
 
 
