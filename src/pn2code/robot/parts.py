@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -230,9 +230,12 @@ class Parts:
 
     def plates_under(self, part: Part) -> set[str]:
         """The turntables and belts on which a part stands, also by parts that do."""
-        on = self.rest(part).on
-        goes = {x: self.present[x].plate for x in on if x in self.present}
-        return {x for x in on if x in self._plates} | set(goes.values()) - {""}
+        return self._plates_in(self.rest(part).on)
+
+    def _plates_in(self, on: Iterable[str]) -> set[str]:
+        """Those among what something stands on, and those with which it goes."""
+        goes = {self.present[x].plate for x in on if x in self.present}
+        return {x for x in on if x in self._plates} | goes - {""}
 
     def run_out(self, line: Set[str]) -> None:
         """Belts that have run as one come to rest. Raises PartFault if the middle of something has come off their end.
@@ -258,12 +261,7 @@ class Parts:
                     f"{does} its middle is {1000.0 * off:.1f} mm beyond the end, "
                     f"where nothing takes it further{other}, part at {where}"
                 )
-            if running := sorted(self.turning.intersection(rest.on)):
-                where = describe(pose_of(self.world(part)))
-                raise PartFault(
-                    f"`{part.plate}` takes `{part.name}` along onto `{running[0]}` while that "
-                    f"{self._ground.plates[running[0]].does}, part at {where}"
-                )
+            self._expect_at_rest(f"`{part.plate}` takes `{part.name}` along", rest.on)
         self._settle_again()
 
     def _beyond(self, plate: str, part: Part) -> float:
@@ -381,6 +379,9 @@ class Parts:
                 raise PartFault(
                     f"`{robot}` releases `{on}` with `{part.name}` on it, {trouble}, part at {describe(pose)}"
                 )
+            self._expect_at_rest(
+                f"`{robot}` releases `{on}` with `{part.name}` on it,", rest.on, " also"
+            )
             on_plate = pose_of(part.frame) if part.plate else None
             self.settled += (
                 PartChange("releases", part.name, pose, rest.on, part.plate, on_plate),
@@ -400,11 +401,18 @@ class Parts:
     def _put_down(self, does: str, effect: str, part: Part, on: tuple[str, ...]) -> PartChange:
         """A part stands from now on; `part` has its frame in the world."""
         plate = self._plate_of(on)
-        if plate in self.turning:
-            raise PartFault(f"{does} on `{plate}` while that {self._ground.plates[plate].does}")
+        self._expect_at_rest(does, on)
         kept = self._keep(part, part.frame, plate)
         on_plate = pose_of(kept.frame) if plate else None
         return PartChange(effect, part.name, pose_of(part.frame), on, plate, on_plate)
+
+    def _expect_at_rest(self, does: str, on: Iterable[str], what: str = "") -> None:
+        """What is put down does not stand on a turntable or belt that moves, or on what goes with one."""
+        if moving := sorted(self.turning & self._plates_in(on)):
+            plate = moving[0]
+            raise PartFault(
+                f"{does}{what} on `{plate}` while that {self._ground.plates[plate].does}"
+            )
 
     def _remove(self, who: str, kind: PartKind, place: str) -> PartChange:
         there = self._at(place, kind)

@@ -268,9 +268,21 @@ def test_a_belt_takes_nothing_onto_another_one_that_runs() -> None:
     parts.stand("feeder", np.array([0.69, 0.0]))
     parts.turning = frozenset({"feeder/away"})
     with pytest.raises(
-        PartFault, match="`feeder/belt` takes `box.1` along onto `feeder/away` while that runs"
+        PartFault, match="`feeder/belt` takes `box.1` along on `feeder/away` while that runs"
     ):
         parts.run_out({"feeder/belt"})
+
+
+@pytest.mark.parametrize("runs", ["belt", "away"])
+def test_nothing_is_put_half_on_a_belt_that_runs(runs: str) -> None:
+    """Whichever of the two it would go with."""
+    parts = Parts(two_belts(0.6))
+    over = [matrix_of(pose_mm(1500, y, 650, 180, 0, 0)) for y in (-1100, -395)]
+    parts.handle("robot", Handling("takes", "box"), over[0])
+    parts.turning = frozenset({f"feeder/{runs}"})
+    with pytest.raises(PartFault, match=f"releases `box.1` on `feeder/{runs}` while that runs"):
+        parts.handle("robot", Handling("releases", "box"), over[1])
+    assert parts.held_by("robot") is not None
 
 
 # --- lines of belts ------------------------------------------------------------------------------
