@@ -82,24 +82,28 @@ def taken_along(
             yield part, carried_to(robot, q, part)
 
 
-def taken_out(
+def closed_on(
     cell: RobotCell,
     held: Held,
     robot: CellRobot,
     way: tuple[Array, Array],
     going: tuple[Iterable[Part], Collection[str]],
-) -> Part | None:
-    """The part that a robot on its way takes out of a clamp which has just closed; None: none.
+) -> str:
+    """That a clamp has closed on a part with which a robot is on its way, for people; "": it has not.
+
+    One that may be empty only lets nothing out that was in it before.
 
     Args:
         way: where the robot stood when it began, and where it is now.
         going: the parts of the cell, and the robot's turntables and belts that move.
     """
     for part, frame in taken_along(robot, way[0], *going):
-        now = carried_to(robot, way[1], part)
-        if all(held.is_at(cell, part.kind, x) for x in (frame, now)):
-            return part
-    return None
+        places = [carried_to(robot, way[1], part)]
+        if held.clamp.may_be_empty:
+            places.append(frame)
+        if all(held.is_at(cell, part.kind, x) for x in places):
+            return f"`{held.name}` closes on `{part.name}` while `{robot.name}` takes that along"
+    return ""
 
 
 @frozen(eq=False)

@@ -30,13 +30,13 @@ from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import (
     Held,
+    closed_on,
     closing,
     holding,
     nearest,
     on_nothing,
     shut,
     taken_along,
-    taken_out,
 )
 from pn2code.robot.commands import (
     Command,
@@ -517,21 +517,21 @@ class Engine:
             if near.off > 0.0:
                 raise CellStoppedError(f"{robot.at(robot.line)}: {on_nothing(held, near)}")
         for held in shut(device, ends[0], ends[1]):
-            self._expect_left(robot, held)
+            self._expect_at_rest(robot, held)
 
-    def _expect_left(self, robot: RobotRunner, held: Held) -> None:
-        """Nobody is on the way out of a clamp that has just closed, with the part on which it has."""
-        assert robot.arm is not None
+    def _expect_at_rest(self, robot: RobotRunner, held: Held) -> None:
+        """Nobody is on the way with the part on which a clamp has just closed."""
         parts = self.parts.parts.present.values()
         for other in self._arms():
             motion = other.motion
             if other.arm is None or motion is None or not isinstance(motion.command, Move):
                 continue
+            if motion.ends <= self.now + 1e-12:
+                continue
             arm = other.arm.robot
             way = motion.trajectory.q(0.0), motion.q(self.now)
-            part = taken_out(self.cell, held, arm, way, (parts, turned(arm, motion)))
-            if part is not None:
-                why = held.words(other.name, part.name, robot.arm.q)
+            why = closed_on(self.cell, held, arm, way, (parts, turned(arm, motion)))
+            if why:
                 raise CellStoppedError(f"{robot.at(robot.line)}: {why}")
 
     def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
