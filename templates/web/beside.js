@@ -163,7 +163,6 @@ export class Beside {
         el("button", { text: "Show it", onclick: () => this.to(kind) }));
     }
     const body = add("Time of B");
-    body.classList.add("time-of-b");
     this.timeline = new Timeline(body, this.run, /** @type {any} */ (this.pacing), {
       onBar: (bar) => this.pacing.seek(bar.start), onStep: (k) => this.pacing.step(k),
     });

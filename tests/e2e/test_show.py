@@ -122,3 +122,32 @@ def test_a_trace_that_grows_for_ever_is_not_read_to_its_end(tmp_path: Path) -> N
     with file.open("a", encoding="utf-8") as more:
         more.write("this is not a line of a trace\n" * 1000)
     assert pn2code("show", file, net, "--steps", 10, "-o", tmp_path / "a.html") == 0
+
+
+@pytest.mark.parametrize("moment", ["1e999", "NaN", "-1e999", "true", "1" + "0" * 400])
+def test_moments_that_no_axis_has_are_passed_over(trace: Path, moment: str) -> None:
+    text = trace.read_text().replace('"by": "reference"', '"by": "run"')
+    trace.write_text(text.replace('"t": 0', f'"t": {moment}'))
+    page = trace.with_suffix(".html")
+    assert pn2code("show", trace, trace.with_name("net.cpn"), "-o", page) == 1
+    assert 'id="data"' in page.read_text(encoding="utf-8")
+
+
+def test_a_damaged_description_is_refused(
+    trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    described, page = tmp_path / "run.json", tmp_path / "a.html"
+    options = ("-o", page, "--description", described)
+    assert pn2code("show", trace, trace.with_name("net.cpn"), *options) == 0
+    whole = described.read_text(encoding="utf-8")
+    data = json.loads(whole)
+    packed = data["course"]["transition"]["deflate"]
+    for old, new, said in (
+        (f'"end":{data["end"]}', '"end":NaN', "`NaN` is no number of JSON"),
+        (f'"end":{data["end"]}', '"end":1e999', "the number `1e999` is too large"),
+        (packed, "AAAA", "the description of a run is damaged: not a packed array"),
+    ):
+        assert old in whole
+        described.write_text(whole.replace(old, new, 1), encoding="utf-8")
+        assert pn2code("show", described, "--compare", described, "-o", page) == 2
+        assert said in " ".join(capsys.readouterr().err.split())

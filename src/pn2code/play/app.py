@@ -41,6 +41,8 @@ from pn2code.web.guard import HOSTS
 
 MOST_TRACE = 200 << 20
 """Bytes of a trace that is loaded."""
+MOST_LETTERS = 10_000
+"""Answers that a page has not read; one that goes on asking is parted from."""
 MOST_QUESTIONS = 2
 """Properties that are explored at the same time, of all pages together."""
 
@@ -115,6 +117,9 @@ class _Hall:
         try:
             while True:
                 self._hear(await socket.receive_text(), seat, tell)
+                if letters.qsize() > MOST_LETTERS:  # it asks, and does not read the answers
+                    await socket.close(1008)
+                    break
         except (WebSocketDisconnect, KeyError):  # KeyError: a message of bytes
             pass
         finally:
