@@ -285,6 +285,18 @@ def test_nothing_is_put_half_on_a_belt_that_runs(runs: str) -> None:
     assert parts.held_by("robot") is not None
 
 
+@pytest.mark.parametrize(("at", "known"), [(1.10497, True), (1.105, False), (1.10503, True)])
+def test_whether_what_is_beyond_the_stop_stops_the_belt_is_known_unless_it_is_just_there(
+    at: float, known: bool
+) -> None:
+    cell = right((at,))
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    found = doing.of("feeder", (run(0.1),), home, doing.start, (home,))
+    assert not found.fault and bool(found.doubt) is not known
+    assert known is False or bool(found.turns) is (at > 1.105)
+
+
 # --- lines of belts ------------------------------------------------------------------------------
 
 
