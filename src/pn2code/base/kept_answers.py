@@ -49,7 +49,7 @@ _NEVER = 2**63
 _MOST_LINKS = 40
 """That follow each other."""
 Stamp = tuple[str, int, int, int]
-"""A path, its size, when its content was changed, and when anything about it was (copying and unpacking do not set that)."""
+"""A path, its size, when its content was changed, and when anything about it was, which nobody can set back."""
 
 _LOADED_NS = time.time_ns()
 """A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
