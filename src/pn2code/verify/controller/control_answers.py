@@ -193,7 +193,7 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     by = ""
     if trace is not None:
         exact = keep.culprit(trace.file, index, found.error.get("binding"))
-        by = f" by `{' '.join(exact.span.text.split())}`" if exact and exact.span else ""
+        by = f" (`{' '.join(exact.span.text.split())}`)" if exact and exact.span else ""
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
