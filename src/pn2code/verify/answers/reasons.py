@@ -58,3 +58,10 @@ _NO_EXCEPTIONS = {
 def raises(message: str) -> str:
     """What is wrong, behind what does it: `raises `Div``, `gives a value that is not in its colour set`."""
     return _NO_EXCEPTIONS.get(message) or f"raises {raised(message)}"
+
+
+def raised_there(message: str, by: str) -> str:
+    """The same as a clause about a place that has been named, and the expression that does it, if that is known."""
+    if message in _NO_EXCEPTIONS:
+        return f"{by or 'it'} {_NO_EXCEPTIONS[message]}"
+    return f"{raised(message)} is raised there" + (f" by {by}" if by else "")
