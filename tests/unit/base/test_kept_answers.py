@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import sys
 import time
+import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -100,3 +104,97 @@ def test_of_the_user_unless_it_is_not_wanted(
     kept = KeptAnswers.of_user()
     assert kept is not None and kept.folder == tmp_path / "pn2code" / "answers"
     assert not kept.is_settled(tmp_path)  # it is newer than this process
+
+
+@pytest.mark.parametrize("name", ["scipy", "flint", "ruckig", "py_opw_kinematics", "eaik"])
+def test_other_libraries_answer_anew(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, name, raising=False)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() == "fine"
+    (tmp_path / "site" / name).mkdir(parents=True)
+    (tmp_path / "site" / name / "__init__.py").write_text("")
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    assert later(tmp_path).question("scene").answer() is None
+
+
+@pytest.mark.parametrize("is_folder", [False, True])
+def test_a_link_that_is_new_may_have_led_elsewhere(is_folder: bool, tmp_path: Path) -> None:
+    old = tmp_path / "old"
+    old.mkdir()
+    (old / "arm.urdf").write_text("<robot/>")
+    time.sleep(0.03)  # longer than a tick
+    begun = KeptAnswers(tmp_path / "answers", time.time_ns())
+    assert begun.is_settled(old / "arm.urdf")
+    (tmp_path / "new").symlink_to(old if is_folder else old / "arm.urdf")
+    (tmp_path / "newer").symlink_to("new")
+    for name in ("new", "newer"):
+        linked = tmp_path / name / "arm.urdf" if is_folder else tmp_path / name
+        assert not begun.is_settled(linked)
+        assert later(tmp_path).is_settled(linked)
+
+
+def test_whole_seconds_may_be_late(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, arm = 1_000_000_001_900_000_000, tmp_path / "arm.urdf"
+    arm.write_text("<robot/>")
+    own = arm.stat()
+
+    def settled(date: int) -> bool:
+        dated = SimpleNamespace(st_mtime_ns=date, st_ctime_ns=date, st_mode=own.st_mode)
+        monkeypatch.setattr(Path, "stat", lambda *_, **__: dated)
+        return KeptAnswers(tmp_path, begun).is_settled(arm)
+
+    assert settled(begun - 30_000_000)
+    assert not settled(1_000_000_000_000_000_000)  # it may be written at .5 of the second after it
+    assert settled(999_999_999_000_000_000)
+
+
+@pytest.mark.parametrize("body", [b"[]", b"3", b'{"answer": 1}', b'{"files": {}}', b'{"files": 1}'])
+def test_what_was_not_written_here_is_no_answer(body: bytes, tmp_path: Path) -> None:
+    question = later(tmp_path).question("scene")
+    question.keep("fine", [])
+    question.file.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
+    assert question.answer() is None
+
+
+def test_code_with_the_same_size_and_date_may_be_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where an installer gives all files one date."""
+    module = tmp_path / "package" / "scene.py"
+    module.parent.mkdir()
+    module.write_text("x = 1\n")
+    os.utime(module, (1, 1))
+    monkeypatch.setattr(kept_answers, "_PACKAGE", module.parent)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() == "fine"
+    module.write_text("x = 2\n")
+    os.utime(module, (1, 1))
+    assert later(tmp_path).question("scene").answer() is None
+
+
+def test_code_that_was_installed_since_the_command_began_has_not_answered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = KeptAnswers(tmp_path / "answers", time.time_ns())
+    module = tmp_path / "package" / "scene.py"
+    module.parent.mkdir()
+    module.write_text("x = 2\n")
+    monkeypatch.setattr(kept_answers, "_PACKAGE", module.parent)
+    begun.question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() is None
+    later(tmp_path).question("scene").keep("fine", [])
+    assert begun.question("scene").answer() is None
+
+
+def test_a_library_in_an_archive_is_not_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "eaik", raising=False)
+    archive = tmp_path / "site.zip"
+    with zipfile.ZipFile(archive, "w") as made:
+        made.writestr("eaik/__init__.py", "")
+    monkeypatch.syspath_prepend(archive)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() is None

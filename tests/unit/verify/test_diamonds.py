@@ -66,6 +66,7 @@ def test_what_commutes(text: str) -> None:
         two("in A : (); inhibit B : ()", "in B : ()"),
         two("in A : (); inhibit Out : ()", "in B : (); out Out : ()"),
         two("in A : (); reset B", "in Out : (); out B : ()"),
+        two("in A : (); reset Free", "both Free : (); in B : ()"),  # what is tested is gone
         two("in Left : n; out Left : n - 1; in A : ()", "in Left : n; out Left : 2 * n; in B : ()"),
         two("in Left : n; out Left : n - 1; in A : ()", "both Left : 3; in B : ()"),
         two("in Left : n; out Left : n - 1; in A : ()", "both Left : n; in B : n`()"),
@@ -91,6 +92,13 @@ def test_what_is_not_shown(text: str) -> None:
 
 def test_a_variable_that_follows_is_no_choice() -> None:
     assert pairs(two("both Kind : c; in Sort : c", "in A : ()")) == ()
+
+
+def test_a_number_of_tokens_that_may_be_none_says_nothing_of_their_colour() -> None:
+    """With `n` of 0 nothing is taken from `Kind`, and `c` is either token of `Sort`."""
+    net = flat(HEAD + two("both Left : n; in Sort : c; in Kind : (n - 3)`c", "in A : ()"))
+    kind = next(p.index for p in net.places if p.short == "Kind")
+    assert diamonds.undecided(net, {}, range(2), [kind]) is None
 
 
 PLACES = 6

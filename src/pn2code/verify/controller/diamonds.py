@@ -12,7 +12,8 @@ Two firings t and u are two transitions, or one with two bindings. It is shown t
                   takes, or tests, of a place, or channel, that holds one at most (or follows from such), and its code
                   segment gives nothing
   one urgency     all transitions of the supervisor have the same priority: what one firing enables holds none back
-  both at once    no place is emptied, or has to be empty, that the other one changes; and of a place from which one
+  both at once    no place has to be empty, or is emptied, that the other one changes, nor is one emptied that the
+                  other one takes from or tests; and of a place from which one
                   takes tokens the other one neither takes nor tests any, unless the place holds one token, and the
                   two change it in ways that commute (`updates`). What is put there besides hinders nobody: the
                   binding that was enabled still is, and tokens add up in any order
@@ -30,7 +31,15 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import combinations
 
 from pn2code.ml.core import terms as core
-from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom, FlatNet, FlatTransition
+from pn2code.net.flat import (
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
 from pn2code.net.uses import pattern_variables
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
@@ -89,11 +98,18 @@ def _has_one_binding(t: FlatTransition, single: Collection[int]) -> bool:
         and arc.kind in (ArcKind.INPUT, ArcKind.BOTH)
         and arc.inscription is not None
         for term in arc.inscription.terms
+        if _takes_some(term)
         for symbol in (*pattern_variables(term.pattern), *_alone(term.value))
     }
     equations = [step for step in t.plan if isinstance(step, BindEquation)]
     bound |= {symbol for e in equations for symbol in pattern_variables(e.pattern)}
     return set(t.variables) <= bound
+
+
+def _takes_some(term: Term) -> bool:
+    """Whether a token is surely taken of what the term says: of `n`c` it may be none, and c anything."""
+    n = term.coefficient
+    return not term.whole and isinstance(n, core.Lit) and isinstance(n.value, int) and n.value > 0
 
 
 def _alone(value: core.Exp) -> tuple[core.Symbol, ...]:
@@ -130,4 +146,5 @@ def _clash(
 
 
 def _disturbs(one: Use, other: Use) -> bool:
-    return (one.inhibits or one.clears) and other.changes
+    """Whether a place has to be empty for the one, or is emptied by it, of which the other one is not independent."""
+    return (one.inhibits and other.changes) or (one.clears and (other.changes or other.demands))
