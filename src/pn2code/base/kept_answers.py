@@ -6,10 +6,10 @@
     question.keep({"fine": True}, [Path("arm.urdf")])     # files that were read for the answer
 
 An answer that is out of date would be a false one, so a question is told apart by: the name and the parts given here;
-pn2code's version and, as Python does for its own compiled modules, the size and date of each of its source files; the
-interpreter, and the libraries and programs that take part; the machine. Files that became known only while the answer
-was looked for are kept with it, by the SHA-256 of their content, and looked at again before it is believed. What has
-changed since the command began is never believed and never kept, for nobody knows which of its contents was read.
+pn2code's version, and the size and both dates of each of its source files; the interpreter, and the libraries and
+programs that take part; the machine. Files that became known only while the answer was looked for are kept with it, by
+the SHA-256 of their content, and looked at again before it is believed. What has changed since the command began is
+never believed and never kept, for nobody knows which of its contents was read.
 """
 
 from __future__ import annotations
@@ -44,8 +44,12 @@ _TICK_NS = 20_000_000
 """The clock of the dates of files may be this late."""
 _COARSE_NS = 2_000_000_000
 """It is this late at most where the file system keeps whole seconds, or every other one."""
+_NEVER = 2**63
+"""A date after each."""
 _MOST_LINKS = 40
 """That follow each other."""
+Stamp = tuple[str, int, int, int]
+"""A path, its size, when its content was changed, and when anything about it was: copying does not set that."""
 
 _LOADED_NS = time.time_ns()
 """A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
@@ -76,12 +80,14 @@ class KeptAnswers:
             name: the beginning of the name of its file.
             parts: all that the answer depends on: bytes, or values that `repr` tells apart.
         """
-        digest = hashlib.sha256(self._makers)
+        makers, newest = self._makers
+        digest = hashlib.sha256(makers)
         for part in (name, *parts):
             data = part if isinstance(part, bytes) else repr(part).encode()
             digest.update(b"%d:" % len(data))
             digest.update(data)
-        return Question(self.folder / f"{name}-{digest.hexdigest()[:40]}.json", self.is_settled)
+        file = self.folder / f"{name}-{digest.hexdigest()[:40]}.json"
+        return Question(file, self.is_settled, is_certain=self._is_before(newest))
 
     def is_settled(self, path: Path) -> bool:
         """Whether a file has been as it is since before the command began, and the links that lead to it, too."""
@@ -89,19 +95,21 @@ class KeptAnswers:
             dates = [*_dates(path.stat()), *_dates_of_links(os.fspath(path.absolute()))]
         except OSError:
             return False
-        return all(
-            date + (_TICK_NS if date % 10**9 else _COARSE_NS) < self._begun for date in dates
-        )
+        return all(map(self._is_before, dates))
+
+    def _is_before(self, date: int) -> bool:
+        return date + (_TICK_NS if date % 10**9 else _COARSE_NS) < self._begun
 
     @cached_property
-    def _makers(self) -> bytes:
-        """Who answers: everything but the question itself."""
+    def _makers(self) -> tuple[bytes, int]:
+        """Who answers, everything but the question itself; and the date of what has changed last."""
         roots = (_PACKAGE, templates_folder(), cnative_folder())
         sources = sorted(row for root in roots for row in _sources(os.fspath(root)))
-        libraries = [_stamp(spec.origin) for name in _LIBRARIES if (spec := find_spec(name))]
+        origins = [spec.origin for name in _LIBRARIES if (spec := find_spec(name)) and spec.origin]
+        libraries = [*map(_library, origins)]
         machine = os.uname() if hasattr(os, "uname") else sys.platform
         said = (pn2code.__version__, sys.version, tuple(machine), sources, libraries)
-        return repr(said).encode()
+        return repr(said).encode(), max(max(dates) for _, _, *dates in (*sources, *libraries))
 
 
 class Question:
@@ -110,14 +118,18 @@ class Question:
     Args:
         file: that of its answer, named by all that it depends on.
         is_settled: whether a file has been as it is since before the command began.
+        is_certain: whether who answers is who was there when the command began, and not installed since.
     """
 
-    def __init__(self, file: Path, is_settled: Any) -> None:
+    def __init__(self, file: Path, is_settled: Any, *, is_certain: bool) -> None:
         self.file = file
         self._is_settled = is_settled
+        self._is_certain = is_certain
 
     def answer(self) -> Any:
         """The answer that was kept, as JSON has it; None: there is none, or a file has changed."""
+        if not self._is_certain:
+            return None
         try:
             head, _, body = self.file.read_bytes().partition(b"\n")
             if hashlib.sha256(body).hexdigest().encode() != head:
@@ -136,7 +148,7 @@ class Question:
     def keep(self, answer: object, files: Iterable[Path]) -> None:
         """Keeps an answer, if all files that it was made from are there and have not changed meanwhile."""
         digests = {os.fspath(p.absolute()): self._digest(p) for p in sorted(set(files))}
-        if None in digests.values():
+        if None in digests.values() or not self._is_certain:
             return
         body = json.dumps({"files": digests, "answer": answer}).encode()
         with suppress(OSError):  # without room it is looked for again the next time
@@ -170,22 +182,24 @@ def _dates_of_links(path: str, most: int = _MOST_LINKS) -> Iterator[int]:
         path = folder
 
 
-def _sources(folder: str) -> Iterator[tuple[str, int, int]]:
-    """Size and date of each source below a folder, as Python tells whether a module has changed."""
+def _sources(folder: str) -> Iterator[Stamp]:
     with os.scandir(folder) as entries:
         for entry in entries:
             if entry.is_dir():
                 yield from _sources(entry.path)
             elif os.path.splitext(entry.name)[1] in _SOURCES:  # noqa: PTH122 - a thousand times
-                status = entry.stat()
-                yield entry.path, status.st_size, status.st_mtime_ns
+                yield _stamp(entry.path, entry.stat())
 
 
-def _stamp(path: str | None) -> tuple[str | None, int, int]:
-    if path is None:
-        return path, 0, 0
-    status = os.stat(path)  # noqa: PTH116
-    return path, status.st_size, status.st_mtime_ns
+def _stamp(path: str, status: os.stat_result) -> Stamp:
+    return path, status.st_size, *_dates(status)
+
+
+def _library(path: str) -> Stamp:
+    try:
+        return _stamp(path, os.stat(path))  # noqa: PTH116
+    except OSError:  # it is in an archive: nobody knows whether it has changed
+        return path, 0, _NEVER, _NEVER
 
 
 def _prune(folder: Path) -> None:

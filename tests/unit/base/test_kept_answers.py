@@ -6,6 +6,7 @@ import hashlib
 import os
 import sys
 import time
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -155,3 +156,45 @@ def test_what_was_not_written_here_is_no_answer(body: bytes, tmp_path: Path) -> 
     question.keep("fine", [])
     question.file.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
     assert question.answer() is None
+
+
+def test_code_with_the_same_size_and_date_may_be_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where an installer gives all files one date."""
+    module = tmp_path / "package" / "scene.py"
+    module.parent.mkdir()
+    module.write_text("x = 1\n")
+    os.utime(module, (1, 1))
+    monkeypatch.setattr(kept_answers, "_PACKAGE", module.parent)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() == "fine"
+    module.write_text("x = 2\n")
+    os.utime(module, (1, 1))
+    assert later(tmp_path).question("scene").answer() is None
+
+
+def test_code_that_was_installed_since_the_command_began_has_not_answered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = KeptAnswers(tmp_path / "answers", time.time_ns())
+    module = tmp_path / "package" / "scene.py"
+    module.parent.mkdir()
+    module.write_text("x = 2\n")
+    monkeypatch.setattr(kept_answers, "_PACKAGE", module.parent)
+    begun.question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() is None
+    later(tmp_path).question("scene").keep("fine", [])
+    assert begun.question("scene").answer() is None
+
+
+def test_a_library_in_an_archive_is_not_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "eaik", raising=False)
+    archive = tmp_path / "site.zip"
+    with zipfile.ZipFile(archive, "w") as made:
+        made.writestr("eaik/__init__.py", "")
+    monkeypatch.syspath_prepend(archive)
+    later(tmp_path).question("scene").keep("fine", [])
+    assert later(tmp_path).question("scene").answer() is None

@@ -80,4 +80,4 @@ def _compiler() -> tuple[object, ...]:
     if path is None:
         return (name,)
     status = os.stat(path)  # noqa: PTH116
-    return name, os.path.realpath(path), status.st_size, status.st_mtime_ns
+    return name, os.path.realpath(path), status.st_size, status.st_mtime_ns, status.st_ctime_ns
