@@ -13,26 +13,33 @@
   var box = document.getElementById("search");
   var results = document.getElementById("results");
   document.documentElement.classList.add("script");
+  // A large picture is on a canvas: as a drawing of the browser it would take a second for each move.
+  var picture = window.graphCanvas ? window.graphCanvas(svg, sheet, whole) : null;
+  function size() {
+    var shown = picture ? picture.canvas : svg;
+    return { width: Math.max(shown.clientWidth, 1), height: Math.max(shown.clientHeight, 1) };
+  }
   tools.hidden = false;
   sheet.tabIndex = 0;
   sheet.setAttribute("aria-label", "State space: plus and minus zoom, arrow keys move, 0 shows all");
 
   // Units of the drawing for each pixel.
   function scale() {
-    return Math.max(whole.width / svg.clientWidth, whole.height / svg.clientHeight);
+    return Math.max(whole.width / size().width, whole.height / size().height);
   }
   function look(x, y, width) {
-    var ratio = svg.clientHeight / svg.clientWidth;
+    var ratio = size().height / size().width;
     whole.width = Math.min(Math.max(width, LEAST), 4 * Math.max(all.width, all.height / ratio));
     whole.height = whole.width * ratio;
     whole.x = x - whole.width / 2;
     whole.y = y - whole.height / 2;
+    if (picture) { picture.look(); }
   }
   function middle() {
     return { x: whole.x + whole.width / 2, y: whole.y + whole.height / 2 };
   }
   function fit() {
-    var ratio = svg.clientHeight / svg.clientWidth;
+    var ratio = size().height / size().width;
     look(all.x + all.width / 2, all.y + all.height / 2, Math.max(all.width, all.height / ratio));
   }
   function zoom(factor, at) {
@@ -41,6 +48,7 @@
     look(point.x + (centre.x - point.x) * factor, point.y + (centre.y - point.y) * factor, whole.width * factor);
   }
   function under(event) {
+    if (picture) { return picture.under(event); }
     var place = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
     return { x: place.x, y: place.y };
   }
@@ -99,14 +107,22 @@
       ends[number] = (ends[number] || []).concat(drawn);
     });
   });
+  function boxOf(number) {
+    var box = picture && picture.boxOf(number);
+    if (box) { return { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top }; }
+    return document.getElementById("node-" + number).getBBox();
+  }
   function show() {
     var target = location.hash && document.getElementById(location.hash.slice(1));
     if (!target || !target.closest("svg")) { return; }
-    svg.querySelectorAll("a.near").forEach(function (a) { a.classList.remove("near"); });
-    (ends[target.id.replace("node-", "")] || []).forEach(function (a) { a.classList.add("near"); });
-    svg.classList.add("looked");
-    var place = target.getBBox();
-    look(place.x + place.width / 2, place.y + place.height / 2, Math.min(whole.width, svg.clientWidth));
+    var number = target.id.replace("node-", "");
+    if (picture) { picture.mark(number, ends[number] || []); } else {
+      svg.querySelectorAll("a.near").forEach(function (a) { a.classList.remove("near"); });
+      (ends[number] || []).forEach(function (a) { a.classList.add("near"); });
+      svg.classList.add("looked");
+    }
+    var place = boxOf(number);
+    look(place.x + place.width / 2, place.y + place.height / 2, Math.min(whole.width, size().width));
     sheet.parentNode.scrollIntoView({ block: "nearest" });
   }
   window.addEventListener("hashchange", show);
@@ -149,8 +165,8 @@
   });
   fit();
   if (scale() > SMALLEST) {
-    var start = document.getElementById("node-1").getBBox();
-    look(start.x + start.width / 2, start.y + start.height / 2, svg.clientWidth);
+    var start = boxOf("1");
+    look(start.x + start.width / 2, start.y + start.height / 2, size().width);
   }
   show();
 })();

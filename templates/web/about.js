@@ -98,7 +98,6 @@ export class GameFile {
     const response = await fetch(this.link.trace, { method: "POST", body: file });
     const answer = await response.json().catch(() => ({ ok: false, message: "the trace cannot be loaded", rows: [] }));
     this.file.value = "";
-    if (answer.state) this.link.ears.onState(answer.state, true);
     this.said(answer);
   }
 }

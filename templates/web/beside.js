@@ -14,7 +14,7 @@ import { Timeline } from "./timeline.js";
 const ROOM = 820;
 /** TCPs that are nearer than this stand at the same place (m). */
 const APART = 5e-4;
-const KINDS = /** @type {[string, string][]} */ ([["step", "Net"], ["message", "Message"], ["pose", "Pose"]]);
+const KINDS = /** @type {[string, string][]} */ ([["step", "Net"], ["message", "Message"], ["pose", "Pose"], ["end", "End"]]);
 
 export class Beside {
   /**
@@ -82,13 +82,14 @@ export class Beside {
     const banner = byId("difference");
     banner.hidden = false;
     const found = KINDS.flatMap(([kind, word]) => (this.differences[kind] ? [{ word, kind, one: this.differences[kind] }] : []));
-    banner.append(el("b", { text: found.length ? "First difference: " : "Both runs have the same steps, messages and poses. " }));
+    banner.append(el("b", { text: found.length ? "First difference: " : `${this.differences.same}. `.replace(/^b/, "B") }));
     for (const { word, kind, one } of found) {
-      const which = kind === "step" ? `step ${one.step}` : kind === "message" ? one.channel : one.robot;
+      const which = kind === "step" ? `step ${one.step}` : kind === "message" ? one.channel : kind === "pose" ? one.robot : shorten(one.what[1], 40);
       banner.append(el("button", {
         text: `${word}: ${which}`, title: `${one.what[0]}\n${one.what[1]}`, onclick: () => this.to(kind),
       }), " ");
     }
+    if (this.differences.notes.length) banner.append(el("span", { class: "note", text: `${this.differences.notes.join("; ")}. ` }));
     const choice = (/** @type {string} */ label, /** @type {string[][]} */ words, /** @type {(v: string) => void} */ chosen) => {
       const group = el("span", { class: "group", role: "group", "aria-label": label }, ...words.map(([value, text, title]) =>
         el("button", { text, title, "data-value": value, onclick: () => chosen(value) })));
@@ -134,7 +135,7 @@ export class Beside {
    */
   to(kind) {
     const one = this.differences[kind];
-    if (kind === "message") this.page.clock.seek(one.t[0]);
+    if (one.step === undefined) this.page.clock.seek(one.t[0]);
     else this.page.clock.step(one.step);
     if (kind === "pose" && document.body.dataset.beside === "net") this.show("cell");
     if (kind === "step" && document.body.dataset.beside === "cell") this.show("net");
@@ -151,19 +152,18 @@ export class Beside {
       const one = this.differences[kind];
       host.append(el("h3", { text: word }));
       if (!one) {
-        const has = kind === "step" || (this.run.happenings && this.page.run.happenings && (kind === "message" || (this.cell && this.page.cell)));
+        const has = this.differences.compared.includes(kind);
         const why = kind === "pose" ? "Up to the first other step no arm stands elsewhere." : "The same in both runs.";
         host.append(el("p", { class: "note", text: has ? why : "There is nothing to compare." }));
         continue;
       }
-      const where = one.step !== undefined ? `step ${one.step}` : `message ${one.number} on ${one.channel}`;
+      const where = kind === "end" ? "at the end" : one.step !== undefined ? `step ${one.step}` : `message ${one.number} on ${one.channel}`;
       host.append(
         el("dl", {}, el("dt", { text: "where" }), el("dd", { text: where }),
           ...[0, 1].flatMap((i) => [el("dt", {}, el("span", { class: `which ${"AB"[i]}`, text: "AB"[i] })), el("dd", { text: shorten(one.what[i], 2000) })])),
         el("button", { text: "Show it", onclick: () => this.to(kind) }));
     }
     const body = add("Time of B");
-    body.classList.add("time-of-b");
     this.timeline = new Timeline(body, this.run, /** @type {any} */ (this.pacing), {
       onBar: (bar) => this.pacing.seek(bar.start), onStep: (k) => this.pacing.step(k),
     });

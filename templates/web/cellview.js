@@ -6,6 +6,7 @@ import { colour, el } from "./dom.js";
 import { Path, frames, valueAt } from "./kinematics.js";
 import { Gaps } from "./gaps.js";
 import { CellScene, place } from "./scene3d.js";
+import { conditionColour, trail } from "./trails.js";
 import { Thrift, drawsInSoftware } from "./thrift.js";
 import { Zones } from "./zones.js";
 
@@ -24,7 +25,6 @@ const LIVE_SAMPLES = 600;
 /** How near to a path a click must be (CSS pixels). */
 const REACH_PX = 6;
 const PATHS_MS = 500;
-const ARM_COLOURS = [0x0072b2, 0xcc79a7, 0x009e73, 0xe69f00, 0x56b4e9, 0xd55e00];
 
 export class CellView {
   /**
@@ -350,7 +350,7 @@ export class CellView {
         points.set([tcp[3], tcp[7], tcp[11]], 3 * n);
         colours.set(conditionColour(condition ? valueAt(condition, path.t[s]) : NaN, condition?.limit ?? 50, i), 3 * n);
       }
-      return this.trail(points, colours, path.t.slice(first));
+      return trail(this.cell?.scene, points, colours, path.t.slice(first));
     });
   }
 
@@ -370,31 +370,6 @@ export class CellView {
       }
     }
     this.makePaths();
-  }
-
-  /**
-   * @param {Float32Array} points
-   * @param {Float32Array} colours
-   * @param {ArrayLike<number>} t
-   */
-  trail(points, colours, t) {
-    const geometry = new THREE.LineGeometry();
-    geometry.setPositions(points);
-    geometry.setColors(colours);
-    const material = new THREE.LineMaterial({ linewidth: 2.4, vertexColors: true });
-    const behind = new THREE.Line2(geometry, material);
-    behind.frustumCulled = false;
-    const plain = new THREE.BufferGeometry();
-    plain.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    const ahead = new THREE.Line(plain, new THREE.LineBasicMaterial({ color: 0x5b6b7c, transparent: true, opacity: 0.45 }));
-    ahead.frustumCulled = false;
-    const past = new THREE.BufferGeometry();
-    past.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    past.setAttribute("color", new THREE.BufferAttribute(colours, 3));
-    const thin = new THREE.Line(past, new THREE.LineBasicMaterial({ vertexColors: true }));
-    thin.frustumCulled = false;
-    this.cell?.scene.add(behind, thin, ahead);
-    return { behind, thin, ahead, material, t, points, count: t.length };
   }
 
   /** @param {boolean} on */
@@ -563,18 +538,4 @@ export class CellView {
     else this.ratio = COARSE;
     this.isSparing = true;
   }
-}
-
-/**
- * From blue over yellow to vermilion as the condition number comes to its limit (which colour-blind people can tell).
- * @param {number} value
- * @param {number} limit
- * @param {number} arm
- * @returns {number[]}
- */
-function conditionColour(value, limit, arm) {
-  if (!Number.isFinite(value)) return new THREE.Color(ARM_COLOURS[arm % ARM_COLOURS.length]).toArray();
-  const share = Math.min(Math.max(Math.log(Math.max(value, 1) / 6) / Math.log(limit / 6), 0), 1);
-  const [a, b] = share < 0.5 ? [0x0072b2, 0xf0c63c] : [0xf0c63c, 0xd55e00];
-  return new THREE.Color(a).lerp(new THREE.Color(b), share < 0.5 ? share * 2 : share * 2 - 1).toArray();
 }

@@ -52,7 +52,7 @@ export class Link {
       return;
     }
     const answer = this.waiting.get(said.id);
-    if (said.state) this.ears.onState(said.state, false);
+    if (said.state) this.ears.onState(said.state, Boolean(said.isWhole));
     if (answer) {
       this.waiting.delete(said.id);
       answer(said);

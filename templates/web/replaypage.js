@@ -83,8 +83,9 @@ export class ReplayPage {
     /** @type {{name: string, tab: any, body: any}[]} */
     const tabs = [];
     const add = (/** @type {string} */ name) => {
-      const body = el("div", { class: `panel ${name.toLowerCase()}`, role: "tabpanel", "aria-label": name, id: `panel-${name}` });
-      const tab = el("button", { role: "tab", text: name, "aria-controls": `panel-${name}`, onclick: () => this.tab(name) });
+      const word = name.toLowerCase().replace(/\s+/g, "-");
+      const body = el("div", { class: `panel ${word}`, role: "tabpanel", "aria-label": name, id: `panel-${word}` });
+      const tab = el("button", { role: "tab", text: name, "aria-controls": body.id, onclick: () => this.tab(name) });
       bar.append(tab);
       host.append(body);
       tabs.push({ name, tab, body });

@@ -1,16 +1,15 @@
 // @ts-check
 /** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
 
+import { LABEL, LEFT, charts, drawChart } from "./charts.js";
 import { upperBound } from "./course.js";
 import { colour, shorten } from "./dom.js";
 
 const HEAD = 20;
-const LEFT = 108;
 const GAP = 8;
 const LOWEST_LANE = 20;
 const HIGHEST_LANE = 32;
 const LOWEST_CURVE = 66;
-const LABEL = 11;
 const HIGHEST_CURVE = 150;
 const MOST_LANES = 14;
 
@@ -20,7 +19,6 @@ export const KINDS = /** @type {Record<string, string>} */ ({
 });
 /** On these dark letters can be read. */
 const LIGHT = new Set(["home", "external"]);
-const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 
 /** @typedef {import("./clock.js").Clock} Clock */
 /** @typedef {{name: string, bars: any[], ticks: Float64Array | number[], steps: number[], party: number}} Lane */
@@ -49,6 +47,8 @@ export class Timeline {
     this.above.setAttribute("aria-hidden", "true");
     host.append(this.canvas, this.above);
     this.drawn = "";
+    /** Where buttons and fingers are that are down. @type {Map<number, number>} */
+    this.fingers = new Map();
     /** @type {{t: number, text: string}[]} moments where another run begins to differ */
     this.marks = [];
     this.from = 0;
@@ -58,10 +58,11 @@ export class Timeline {
     this.hover = null;
     /** @type {Lane[]} */
     this.lanes = run.happenings ? this.partyLanes() : this.pageLanes();
-    this.curves = this.charts();
+    this.curves = charts(run);
     new ResizeObserver(() => this.paint()).observe(host);
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
     this.canvas.addEventListener("pointermove", (e) => this.point(e));
+    for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, (e) => this.release(/** @type {PointerEvent} */ (e)));
     this.canvas.addEventListener("pointerleave", () => this.leave());
     this.canvas.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
     this.canvas.addEventListener("dblclick", () => this.whole());
@@ -114,29 +115,6 @@ export class Timeline {
       const path = this.run.net.instances[at]?.path.split("/").pop() ?? "net";
       return { name: path, party: -1, bars: [], steps, ticks: steps.map((k) => course.time[k - 1]) };
     });
-  }
-
-  /** Curves that share a chart. */
-  charts() {
-    const curves = this.run.happenings?.curves ?? [];
-    const charts = [];
-    for (const [kind, title] of [["clearance", "clearance [mm]"], ["condition", "conditioning"]]) {
-      const own = curves.filter((/** @type {any} */ c) => c.kind === kind);
-      if (!own.length) continue;
-      const scale = kind === "clearance" ? 1000 : 1;
-      const limit = own[0].limit * scale;
-      let low = limit;
-      let high = limit;
-      for (const c of own) {
-        for (const v of c.v) {
-          if (!Number.isFinite(v)) continue;
-          low = Math.min(low, v * scale);
-          high = Math.max(high, v * scale);
-        }
-      }
-      charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.max(high * 1.15, 2) });
-    }
-    return charts;
   }
 
   /**
@@ -228,25 +206,49 @@ export class Timeline {
   /** @param {PointerEvent} e */
   press(e) {
     this.canvas.setPointerCapture(e.pointerId);
-    this.isDragging = true;
+    this.fingers.set(e.pointerId, e.offsetX);
+    this.isDragging = this.fingers.size === 1;
+    if (!this.isDragging) return;
     const bar = this.barAt(e.offsetX, e.offsetY);
     if (bar) this.actions.onBar(bar);
     else this.clock.seek(this.time(e.offsetX));
-    this.canvas.onpointerup = () => {
-      this.isDragging = false;
-      this.canvas.onpointerup = null;
-    };
+  }
+
+  /** @param {PointerEvent} e */
+  release(e) {
+    this.fingers.delete(e.pointerId);
+    this.isDragging = false;
   }
 
   /** @param {PointerEvent} e */
   point(e) {
+    if (this.fingers.size > 1) {
+      this.pinch(e);
+      return;
+    }
     if (this.isDragging && e.buttons) {
       this.clock.seek(this.time(e.offsetX));
       return;
     }
+    if (e.pointerType === "touch") return;
     this.hover = { x: e.offsetX, y: e.offsetY };
     this.canvas.title = this.tip(e.offsetX, e.offsetY);
     this.paint();
+  }
+
+  /**
+   * Two fingers: what is between them stays between them.
+   * @param {PointerEvent} e
+   */
+  pinch(e) {
+    const before = this.fingers.get(e.pointerId);
+    const other = [...this.fingers].find(([id]) => id !== e.pointerId)?.[1];
+    if (before === undefined || other === undefined) return;
+    const [from, to] = [before - other, e.offsetX - other].map((gap) => Math.max(Math.abs(gap), 12));
+    const middle = this.time((before + other) / 2);
+    this.fingers.set(e.pointerId, e.offsetX);
+    this.zoom(from / to, middle);
+    this.pan(middle - this.time((e.offsetX + other) / 2));
   }
 
   leave() {
@@ -321,7 +323,7 @@ export class Timeline {
       this.divide();
       this.lanes.forEach((lane, i) => this.drawLane(c, lane, HEAD + i * this.lane, w));
       this.messages(c);
-      this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
+      this.curves.forEach((chart, i) => drawChart(c, this, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
       this.events(c, h);
     }
     this.drawMoment(cleared(this.above, w, h), h);
@@ -373,7 +375,8 @@ export class Timeline {
       c.moveTo(x, HEAD);
       c.lineTo(x, h);
       c.stroke();
-      c.fillText(`${t.toFixed(digits)}${unit}`, Math.min(x, w - 22), HEAD / 2);
+      const label = unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
+      c.fillText(label, Math.min(x, w - 6 - c.measureText(label).width / 2), HEAD / 2);
     }
     c.textAlign = "left";
     c.fillText(this.run.clock === "seconds" ? "" : "step", 8, HEAD / 2);
@@ -464,55 +467,6 @@ export class Timeline {
     c.lineTo(x - 3, b - down * 11);
     c.lineTo(x + 3, b - down * 11);
     c.fill();
-  }
-
-  /**
-   * @param {CanvasRenderingContext2D} c
-   * @param {any} chart
-   * @param {number} y
-   * @param {number} w
-   */
-  chart(c, chart, y, w) {
-    const CURVE = this.curve;
-    const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
-    const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
-    c.fillStyle = this.ink?.text ?? "";
-    c.fillText(chart.title, 8, y + 8);
-    c.save();
-    c.beginPath();
-    c.rect(LEFT, y - 1, w - LEFT, CURVE + 2);
-    c.clip();
-    c.strokeStyle = "#D55E00";
-    c.setLineDash([3, 3]);
-    c.beginPath();
-    c.moveTo(LEFT, at(chart.limit));
-    c.lineTo(w, at(chart.limit));
-    c.stroke();
-    c.setLineDash([]);
-    chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-      c.strokeStyle = CURVES[i % CURVES.length];
-      c.lineWidth = 1.5;
-      c.beginPath();
-      let isOpen = false;
-      const first = Math.max(upperBound(curve.t, this.from) - 2, 0);
-      const last = Math.min(upperBound(curve.t, this.to) + 2, curve.t.length);
-      for (let k = first; k < last; k++) {
-        const v = curve.v[k] * chart.scale;
-        if (!Number.isFinite(v)) {
-          isOpen = false;
-          continue;
-        }
-        if (isOpen) c.lineTo(this.x(curve.t[k]), at(v));
-        else c.moveTo(this.x(curve.t[k]), at(v));
-        isOpen = true;
-      }
-      c.stroke();
-    });
-    c.restore();
-    chart.curves.slice(0, 4).forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-      c.fillStyle = CURVES[i % CURVES.length];
-      c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 21 + i * LABEL);
-    });
   }
 
   /**

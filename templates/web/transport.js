@@ -75,7 +75,7 @@ export class Transport {
     this.play.setAttribute("aria-label", clock.isPlaying ? "Pause (space)" : "Play (space)");
     this.slider.value = String((clock.t / clock.end) * 1000);
     if (document.activeElement !== this.time) this.time.value = isSeconds ? clock.t.toFixed(2) : String(clock.k);
-    this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(2)} s` : ` / ${clock.course.steps}`;
+    this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(2)} s` : ` / ${clock.course.steps.toLocaleString("en")}`;
     const model = clock.course.clock && clock.k ? `time ${clock.course.clock[clock.k - 1]}` : "";
     this.step.textContent = isSeconds ? `step ${clock.k} / ${clock.course.steps}` : model;
     this.speed.value = String(Math.log10(clock.speed));

@@ -122,6 +122,8 @@ export class Window {
   rest(e) {
     if (this.moved || this.fingers.size !== 1) return;
     this.moved = this.isLong = true;
+    // What is under the finger by then is not clicked when it goes.
+    e.target?.addEventListener("touchend", (up) => up.preventDefault(), { once: true, passive: false });
     this.ears.onLong(e.target);
   }
 

@@ -88,6 +88,21 @@ def test_what_a_clamp_holds_is_not_pulled_out(tmp_path: Path) -> None:
     assert "`arm` pulls `blank.1` out of `mill/vice`, which holds it" in record.reason
 
 
+def at_once(net: str) -> str:
+    """The arm is told to go away when the mill is told to clamp."""
+    leaving = net.replace("      out clamp\n", "      out clamp\n      out leave\n", 1)
+    leaving = leaving.replace("      in clamped\n      out leave\n", "      in clamped\n", 1)
+    assert leaving.count("out leave") == net.count("out leave")
+    return leaving
+
+
+def test_what_a_clamp_closes_on_is_not_on_the_way_out(tmp_path: Path) -> None:
+    """The arm has begun before the clamp holds the blank, and has not come far when it does."""
+    record = ran(tmp_path, at_once(PULLED).replace("clampTo 59.8", "clampTo 119.5"), "fake").record
+    assert record.verdict == "failed"
+    assert "`mill/vice` closes on `blank.1` while `arm` takes that along" in record.reason
+
+
 ASIDE = TOML.replace("[places.inVice]\nx = 1.0\n", "[places.inVice]\nx = 1.0\ny = -0.01\n")
 EMPTY = ASIDE.replace('holds = "inVice"', 'holds = "inVice"\nmay_be_empty = true')
 
@@ -111,10 +126,7 @@ def test_over_all_interleavings_a_clamp_closes_on_a_part(tmp_path: Path) -> None
     closed = [a for a in found.doing.activities if a.leans]
     assert not found.why and {a.leans for a in closed} == {frozenset({"arm"})}
     assert not any(a.fault for a in found.doing.activities)
-    leaving = NET.replace("      out clamp\n", "      out clamp\n      out leave\n", 1)
-    leaving = leaving.replace("      in clamped\n      out leave\n", "      in clamped\n", 1)
-    assert leaving.count("out leave") == NET.count("out leave")
-    assert situations(door_cell(tmp_path / "leaving", leaving)).why == "order"
+    assert situations(door_cell(tmp_path / "leaving", at_once(NET))).why == "order"
     early = NET.replace(
         "      out load\n      out Loading\n",
         "      out load\n      out clamp\n      out Loading\n",

@@ -104,6 +104,7 @@ NEVER = {
     "./dev bench --firings": "the same",
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
+    "./dev bench --play": "the same, in a browser",
     "./dev bench --compile": "the same",
     "./dev bench --replay": "the same, in a browser",
     "./dev bench --live examples/riveting --repeat 3": "the same",
@@ -125,6 +126,7 @@ NEVER = {
     "pn2code play examples/philosophers/philosophers.cpn": PLAYED,
     "pn2code play mynet.cpn --trace mynet.dead-40.trace.jsonl": PLAYED,
     "pn2code play mycell --no-browser --port 8080": PLAYED,
+    "pn2code show run --compare other-run -o both.html": "needs a run of another time; test_compare does the same",
     ". .venv/bin/activate": "the environment of the tests is one of another place",
 }
 """Typed by people only, with the reason."""

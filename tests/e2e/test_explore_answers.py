@@ -151,7 +151,7 @@ def test_truncated(counter: Asked) -> None:
     lines = [*LEAVES, "ef 3", "? invariant 0", "? invariant 3", "? initially 6", "? bound 0 0 1"]
     found, answers = counter.say(lines, "--max-states", 2000)
     assert found.report["why"] == "states"
-    assert [a["answer"] for a in answers] == ["no", "unknown", "unknown", "unknown"]
+    assert [a["answer"] for a in answers] == ["no", "unknown", "yes", "unknown"]
     assert [a["why"] for a in answers] == [None, "states", "states", "states"]
     assert answers[0]["steps"] == 10
     _, answers = counter.say(lines, "--no-graph")

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from helpers.browser import PATIENCE_MS, launched
+from helpers import netbuilder
+from helpers.browser import PATIENCE_MS, launched, opened
 from helpers.processes import pn2code
+from pn2code.verify.report import graph_svg
+from pn2code.verify.report.graph import read
+from pn2code.verify.report.graph_page import page as graph_page
 
 pytestmark = pytest.mark.cc
 
@@ -108,3 +113,61 @@ def test_zooming_and_moving(page: Any) -> None:
     moved = [a - b for a, b in zip(middle(page), before, strict=True)]
     assert moved == pytest.approx([100 * scale, 50 * scale], rel=0.05)
     assert "#" not in page.url, "dragging is no click"
+
+
+def test_a_large_picture_is_on_a_canvas(
+    chromium: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Many markings one after the other: moves do not draw all of them, and what is clicked is found."""
+    count = 60
+    monkeypatch.setattr(graph_svg, "LARGE", 100)
+    net = netbuilder.flat(COUNTER)
+    rows: list[dict[str, Any]] = []
+    for n in range(1, count + 1):
+        rows.append({"node": n, "t": 0, "marking": {"Top.A": [[1, n]]}})
+        if n < count:
+            arc = {"from": n, "to": n + 1, "t": 0, "transition": "Top.T", "index": 0}
+            rows.append({**arc, "binding": {"n": n}})
+    rows.sort(key=lambda row: "node" not in row)
+    listed = tmp_path / "graph.jsonl"
+    listed.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
+    file = tmp_path / "graph.html"
+    file.write_text(graph_page(net, read(net, listed)), encoding="utf-8")
+    with opened(chromium) as browser:
+        browser.page.goto(file.as_uri())
+        assert browser.page.locator(".sheet canvas").is_visible()
+        assert not browser.page.locator(".sheet svg").is_visible()
+        browser.page.fill("#search", "34")
+        browser.page.keyboard.press("Enter")
+        x, y = centre_of_canvas(browser.page)
+        browser.page.mouse.wheel(0, -200)
+        browser.page.mouse.click(x, y)
+        browser.wait("location.hash === '#row-34'")
+        pixels = """() => {
+          const c = document.querySelector(".sheet canvas");
+          const d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+          let n = 0;
+          for (let i = 0; i < d.length; i += 4) {
+            n += d[i] > 200 && d[i + 1] > 100 && d[i + 1] < 180 && d[i + 2] < 80;
+          }
+          return n;
+        }"""
+        assert browser.ask(pixels) > 100, "the node is orange"
+        assert browser.errors == []
+
+
+COUNTER = """
+net Counter
+  standard
+  var n : INT;
+  page Top
+    place A : INT = 1`1
+    trans T
+      in A : n
+      out A : n + 1
+"""
+
+
+def centre_of_canvas(page: Any) -> tuple[float, float]:
+    box = page.locator(".sheet canvas").bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2

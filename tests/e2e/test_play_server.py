@@ -147,11 +147,14 @@ class TestGames:
             own = f"http://127.0.0.1:{server.port}"
             status, _, text = server.get(path, method="POST", body=body, origin=own)
             answer = json.loads(text)
-            assert status == 200 and answer["ok"] and answer["state"]["position"] == 12
-            assert answer["state"]["places"] == wanted
+            assert status == 200 and answer["ok"] and "state" not in answer
+            told = talk.hear("isWhole")["state"]  # in order with what else the page is told
+            assert told["position"] == 12 and told["places"] == wanted
+            assert isinstance(told["enabled"], list)
             for bad in (b"", b"\xff\x00", b"{", b"[" * 100_000):
                 answer = json.loads(server.get(path, method="POST", body=bad, origin=own)[2])
-                assert not answer["ok"] and answer["state"]["position"] == 12
+                assert not answer["ok"]
+                assert talk.hear("isWhole")["state"]["position"] == 12
 
     @pytest.mark.cc
     def test_a_property_is_answered_beside_the_game(self, server: Served) -> None:

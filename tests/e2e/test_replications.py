@@ -90,6 +90,16 @@ def test_a_run_that_fails_is_the_last(tmp_path: Path) -> None:
     assert result.stdout.count("no more enabled transitions") < 5
 
 
+def test_where_no_simulation_comes_to_its_end_nothing_is_said_of_collectors(tmp_path: Path) -> None:
+    fails = made(
+        tmp_path, QUEUE.replace("if i = ~1 then 100 div (i + 1)", "if i = 1 then 100 div 0")
+    )
+    result = simulated(fails, "--replications", "3")
+    assert result.exit_code == 1 and "0 of 3 simulations" in result.stdout
+    assert "no simulation came to its end" in result.stdout
+    assert "the net has no data collectors" not in result.stdout
+
+
 def test_logs_of_each_simulation(tmp_path: Path) -> None:
     folder = tmp_path / "files"
     folder.mkdir()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -21,6 +21,7 @@ from pn2code.cell.partition import Partition
 from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
+from pn2code.division import divided
 from pn2code.run.cell import RunOptions, run_cell
 from pn2code.verdict.asked import gather
 from pn2code.verdict.controller import look
@@ -535,7 +536,8 @@ def test_properties_are_about_the_cell(
     )
     found = explore(opened.flat, {}, limits, d, options)
     assert found is not None, render.report(d)
-    looked = look(opened, found, limits, options, folder, d, wanted.plain)
+    wanted = replace(wanted, partition=divided(opened.flat, opened.config, d))
+    looked = look(opened, wanted.partition, found, limits, options, folder, d, wanted.plain)
     never = Deadline.after(None)
     (said,) = answered(wanted, opened, found, (), folder, "x", never, d, looked)
     assert not d.items, render.report(d)
@@ -578,7 +580,8 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     d = Diagnostics()
     found = explore(opened.flat, {}, Limits(), d, ExploreOptions(quick=True))
     assert found is not None
-    looked = look(opened, found, Limits(), ExploreOptions(), tmp_path, d)
+    partition = divided(opened.flat, opened.config, d)
+    looked = look(opened, partition, found, Limits(), ExploreOptions(), tmp_path, d)
     assert looked is not None
     check = next(c for c in looked.checks if c.name == "capacity")
     assert check.answer == "no" and check.fails

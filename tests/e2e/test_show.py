@@ -46,7 +46,9 @@ class TestRun:
     def test_a_run_beside_itself_has_no_difference(self, run: Path, tmp_path: Path) -> None:
         file = tmp_path / "both.html"
         assert pn2code("show", run, "--compare", run, "-o", file) == 0
-        assert '"differences":{"step":null,"message":null,"pose":null}' in file.read_text()
+        assert (
+            '"differences":{"step":null,"message":null,"pose":null,"end":null,' in file.read_text()
+        )
 
     def test_its_trace_alone_is_shown_in_seconds(
         self, run: Path, root: Path, tmp_path: Path
@@ -98,6 +100,21 @@ def test_a_trace_of_another_net_is_shown_as_far_as_it_goes(
     assert (tmp_path / "a.html").is_file()
 
 
+def test_a_second_run_that_is_not_possible_is_said(
+    trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = trace.read_text().splitlines()
+    other = tmp_path / "b.trace.jsonl"
+    again = lines[10].replace('"step": 10,', '"step": 11,')
+    other.write_text("\n".join([*lines[:11], again, *lines[12:]]))
+    options = ("--compare", other, "-o", tmp_path / "both.html")
+    assert pn2code("show", trace, tmp_path / "net.cpn", *options) == 1
+    out, err = capsys.readouterr()
+    assert "first other step 11: Top." in out
+    assert "in the second run the next step is not possible" in out
+    assert "the second run is shown to step 10" in err
+
+
 def test_what_cannot_be_shown_is_said(
     trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -122,3 +139,36 @@ def test_a_trace_that_grows_for_ever_is_not_read_to_its_end(tmp_path: Path) -> N
     with file.open("a", encoding="utf-8") as more:
         more.write("this is not a line of a trace\n" * 1000)
     assert pn2code("show", file, net, "--steps", 10, "-o", tmp_path / "a.html") == 0
+
+
+@pytest.mark.parametrize("moment", ["1e999", "NaN", "-1e999", "true", "1" + "0" * 400])
+def test_moments_that_no_axis_has_are_passed_over(trace: Path, moment: str) -> None:
+    text = trace.read_text().replace('"by": "reference"', '"by": "run"')
+    trace.write_text(text.replace('"t": 0', f'"t": {moment}'))
+    page = trace.with_suffix(".html")
+    assert pn2code("show", trace, trace.with_name("net.cpn"), "-o", page) == 1
+    assert 'id="data"' in page.read_text(encoding="utf-8")
+
+
+def test_a_damaged_description_is_refused(
+    trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    described, page = tmp_path / "run.json", tmp_path / "a.html"
+    options = ("-o", page, "--description", described)
+    assert pn2code("show", trace, trace.with_name("net.cpn"), *options) == 0
+    whole = described.read_text(encoding="utf-8")
+    data = json.loads(whole)
+    packed = data["course"]["transition"]["deflate"]
+    for old, new, said in (
+        (f'"end":{data["end"]}', '"end":NaN', "`NaN` is no number of JSON"),
+        (f'"end":{data["end"]}', '"end":1e999', "the number `1e999` is too large"),
+        (packed, "AAAA", "the description of a run is damaged: not a packed array"),
+        ('"refused":null', '"refused":[1]', "its `course.refused` does not say which step"),
+        ('"refused":null', '"refused":{"step":"x","transition":"T","why":""}', "`course.refused`"),
+        ('"steps":20', '"steps":2000', "its `course.steps` is not the number of its steps"),
+        ('"final":[]', '"final":"Top.A"', "its `verdict.final` is no list of names"),
+    ):
+        assert old in whole
+        described.write_text(whole.replace(old, new, 1), encoding="utf-8")
+        assert pn2code("show", described, "--compare", described, "-o", page) == 2
+        assert said in " ".join(capsys.readouterr().err.split())

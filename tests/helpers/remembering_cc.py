@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 
+from pn2code.emission.c_flags import STANDARD
 from pn2code.emission.environment import c_string
 
 KEPT = "PN2CODE_TEST_OBJECTS"
@@ -26,7 +27,7 @@ SOURCE = Path(__file__).with_suffix(".c")
 NAMES = ("cc", "gcc")
 MOST_BYTES = 1 << 30
 """Of objects that are kept; the ones that were not used for the longest time go first."""
-_FLAGS = ("-std=c11", "-O2", "-Wall", "-Wextra", "-Werror")
+_FLAGS = (STANDARD, "-O2", "-Wall", "-Wextra", "-Werror")
 _SECONDS_LONG_AGO = 3600.0
 
 

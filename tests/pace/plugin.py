@@ -12,11 +12,13 @@ import gc
 import json
 import os
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
+from _pytest.pathlib import import_path
 
 from helpers.thorough import THOROUGH
 from pace.budget import Meter, is_exceeded
@@ -61,6 +63,11 @@ def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(Pace(config), "pace")
 
 
+def files_at(place: Path) -> Iterable[Path]:
+    """The files of tests at a place: itself, or all in a folder."""
+    return place.rglob("test_*.py") if place.is_dir() else [place] * place.is_file()
+
+
 class Pace:
     """The hooks."""
 
@@ -95,11 +102,32 @@ class Pace:
         """
         gc.disable()
         try:
+            if self._is_worker:
+                self._import_share()
             return (yield)
         finally:
             gc.freeze()
             gc.set_threshold(*_THRESHOLDS)
             gc.enable()
+
+    def _import_share(self) -> None:
+        """Imports a share of the files that were asked for, which no other worker begins with.
+
+        So where no module has been compiled yet, as in a new checkout, each is compiled by one of them, not by all.
+        """
+        worker: dict[str, Any] = self._config.workerinput  # type: ignore[attr-defined]
+        number, count = int(worker["workerid"].removeprefix("gw")), int(worker["workercount"])
+        root, args = self._config.invocation_params.dir, self._config.args
+        files = sorted({path for arg in args for path in files_at(root / arg.partition("::")[0])})
+        for path in files[number % count :: count]:
+            # Whatever is wrong with it is said when it is collected.
+            with suppress(Exception, pytest.skip.Exception, SystemExit):
+                import_path(
+                    path,
+                    mode=self._config.getoption("importmode"),
+                    root=self._config.rootpath,
+                    consider_namespace_packages=self._config.getini("consider_namespace_packages"),
+                )
 
     # ---- which tests, and in what order
 

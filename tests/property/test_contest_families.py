@@ -10,7 +10,7 @@ import pytest
 
 from helpers.examined import examined, numbers
 from helpers.random_tables import Graph
-from helpers.table_families import FAMILIES
+from helpers.table_families import FAMILIES, readers_and_writers
 from pn2code.contest.engine import engine
 from pn2code.contest.portfolio import answers, space
 from pn2code.diagnostics import Diagnostics
@@ -52,3 +52,11 @@ def test_each_method_alone(program: Path, family: str) -> None:
             sizes.tokens_in_place,
             sizes.tokens_in_marking,
         ) == numbers(graph)
+
+
+def test_wide_transitions_do_not_spoil_the_order(program: Path) -> None:
+    """Each of 60 readers reads or not, or one of 10 writers writes."""
+    tables = readers_and_writers(60, 10)
+    sizes = space(program, tables, seconds=60.0, mebibytes=1024, only="diagrams")
+    assert sizes is not None and sizes.states == 2**60 + 10
+    assert sizes.arcs == 60 * 2**60 + 2 * 10

@@ -17,7 +17,7 @@ from tools.geometry.eyes import Eyes
 from pn2code.geometry.graph import CellGraph
 from pn2code.robot.belts import until_stop
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.clamps import closing, holding, nearest, on_nothing, taken_along
+from pn2code.robot.clamps import closed_on, closing, holding, nearest, on_nothing, shut, taken_along
 from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
@@ -70,6 +70,16 @@ class _Arm:
                 if held.holds(joints[held.device.name]):
                     return held.words(robot.name, part.name, joints[held.device.name])
         return ""
+
+    def is_held(self, device: _Arm, ends: list[np.ndarray], parts: PartKeeper) -> str:
+        """That a clamp of a device has just closed on what it takes along; "": none has."""
+        motion, robot = self.executor.motion, self.executor.robot
+        if motion is None or not isinstance(motion.command, Move):
+            return ""
+        going = parts.parts.present.values(), turned(robot, motion)
+        way = motion.trajectory.q(0.0), self.joints()
+        held = shut(device.executor.robot, ends[0], ends[1])
+        return next(filter(None, (closed_on(parts.cell, x, robot, way, going) for x in held)), "")
 
     def turning(self) -> frozenset[str]:
         motion = self.executor.motion
@@ -167,6 +177,9 @@ def _walk(
                     near = nearest(cell, held, parts.parts.everywhere(joints))
                     if near.off > 0.0:
                         return on_nothing(held, near)
+                for other in arms.values():
+                    if other is not arm and (why := other.is_held(arm, ends, parts)):
+                        return why
                 handle(robot.name, done.command, arm.executor, parts)
                 if arm.left:
                     begun = arm

@@ -49,6 +49,9 @@ typedef struct sy_step {
     sy_path_t rest;
 } sy_step_t;
 
+/* Whether all reachable markings lead back to the initial one. */
+typedef enum sy_home { SY_NOT_TRIED, SY_NOT_HOME, SY_HOME } sy_home_t;
+
 /* Transitions, forwards or backwards. */
 typedef struct sy_events {
     sy_op_t op;         /* of saturation with them */
@@ -90,6 +93,7 @@ typedef struct sy_diagrams {
     tb_count_t *most; /* level -> the most tokens, once the state space is known */
     sy_node_t space;  /* all reachable markings */
     sy_node_t dead;   /* those in which nothing is enabled; SY_ANY: not worked out yet */
+    sy_home_t home;
     sy_node_t idle;   /* those in which a transition is enabled that changes nothing; likewise */
     jmp_buf given_up; /* where to go on when time is over, or a number is too large */
 } sy_diagrams_t;
@@ -150,7 +154,7 @@ void sy_make_events(sy_diagrams_t *d);
 
 /* What a path makes of a set, as far as it lies in `within`. */
 sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t path);
-/* What all transitions that change something make of a set, once, as far as it lies in `within`, which is not SY_ANY. */
+/* What all transitions that change something make of a set, once, as far as it lies in `within` (not SY_ANY). */
 sy_node_t sy_step_of_all(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 /* A set with all that transitions make of it, again and again, as far as that lies in `within`. */
 sy_node_t sy_saturated(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
@@ -189,6 +193,8 @@ sy_node_t sy_where_dead(sy_diagrams_t *d);
 sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within);
 /* The markings to which a transition leads from a set. */
 sy_node_t sy_after(sy_diagrams_t *d, sy_node_t n);
+/* The markings from which a path stays in a set of reachable ones for ever, or until it ends (symbolic_always.c). */
+sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p);
 /* The reachable markings in which none of some transitions is enabled (symbolic_enabled.c). */
 sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * symbolic_enabled.c - the reachable markings in which none of some transitions is enabled.
  *
- * Each transition is looked at only from the level of the highest place in which it needs tokens, as in saturation: what
- * lies further up is walked through once for all of them, not once for each.
+ * Each transition is looked at only from the level of the highest place in which it needs tokens, as in saturation:
+ * what lies further up is walked through once for all of them, not once for each.
  */
 #include "symbolic.h"
 

@@ -163,26 +163,32 @@ static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
     return sy_saturated(d, &d->backwards, q, p);
 }
 
-static sy_node_t exists_always(sy_diagrams_t *d, sy_node_t p)
+/* If the initial marking is a home marking, each marking leads to all others. It is tried once: should time be over
+ * meanwhile, it is as if it were not so. */
+static bool is_home(sy_diagrams_t *d)
 {
-    if (p == d->space) {
-        return p; /* wherever a path goes */
+    if (d->home == SY_NOT_TRIED) {
+        d->home = SY_NOT_HOME;
+        const sy_node_t start = sy_one(d, d->net->initial);
+        d->home = (exists_until(d, d->space, start) == d->space) ? SY_HOME : SY_NOT_HOME;
     }
-    const sy_node_t ends = sy_intersection(d, sy_where_dead(d), p);
-    for (;;) {
-        const sy_node_t kept = sy_union(d, ends, sy_before(d, p, p));
-        if (kept == p) {
-            return p;
-        }
-        p = kept;
+    return d->home == SY_HOME;
+}
+
+/* The markings from which one of a set is reachable. */
+static sy_node_t leads_to(sy_diagrams_t *d, sy_node_t n)
+{
+    if ((n == (sy_node_t)SY_NONE) || (n == d->space)) {
+        return n;
     }
+    return is_home(d) ? d->space : exists_until(d, d->space, n);
 }
 
 static sy_node_t always_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 {
     const sy_node_t not_q = other(d, q);
     const sy_node_t neither = sy_difference(d, not_q, p);
-    return other(d, sy_union(d, exists_until(d, not_q, neither), exists_always(d, not_q)));
+    return other(d, sy_union(d, exists_until(d, not_q, neither), sy_always(d, not_q)));
 }
 
 static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
@@ -191,10 +197,10 @@ static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
     switch (f->op) {
     case TB_EX: return sy_before(d, p, d->space);
     case TB_AX: return other(d, sy_before(d, other(d, p), d->space));
-    case TB_EF: return exists_until(d, d->space, p);
-    case TB_AF: return other(d, exists_always(d, other(d, p)));
-    case TB_EG: return exists_always(d, p);
-    case TB_AG: return other(d, exists_until(d, d->space, other(d, p)));
+    case TB_EF: return leads_to(d, p);
+    case TB_AF: return other(d, sy_always(d, other(d, p)));
+    case TB_EG: return sy_always(d, p);
+    case TB_AG: return other(d, leads_to(d, other(d, p)));
     case TB_EU: return exists_until(d, p, sy_where(d, f->part[1]));
     case TB_AU: return always_until(d, p, sy_where(d, f->part[1]));
     default: tb_fail(TB_EXIT_WRONG, "operator %d is none of time", (int)f->op);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * symbolic_linear.c - whether a Buechi automaton accepts a run of the net, with sets of markings.
  *
- * For each state of the automaton the markings are found that the product reaches with it, then those from which one can
- * go on for ever within a strongly connected component of the automaton, coming to accepting states again and again
- * (Emerson, Lei 1986): if any are left, a run is accepted. A dead marking follows itself. A move of the automaton from a
- * state to itself is what saturation can do at once, within its guard.
+ * For each state of the automaton the markings are found that the product reaches with it, then those from which one
+ * can go on for ever within a strongly connected component of the automaton, coming to accepting states again and again
+ * (Emerson, Lei 1986): if any are left, a run is accepted. A dead marking follows itself. A move of the automaton from
+ * a state to itself is what saturation can do at once, within its guard.
  */
 #include "symbolic.h"
 
@@ -128,8 +128,8 @@ static void go_other_ways(const product_t *p, uint32_t s, sy_node_t n)
     }
 }
 
-/* Find all markings that are reached with each state: what is new in one of them is closed under its way to itself, then
- * goes the other ways. True: a state is reached that is accepting and never has to be left. */
+/* Find all markings that are reached with each state: what is new in one of them is closed under its way to itself,
+ * then goes the other ways. True: a state is reached that is accepting and never has to be left. */
 static bool meet(const product_t *p)
 {
     sy_diagrams_t *d = p->d;

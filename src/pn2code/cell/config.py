@@ -125,6 +125,15 @@ class SensorConfig:
     says: str = ""
     at: float = 0.0
 
+    @property
+    def tells(self) -> str:
+        """What it tells, in plain words; where cell.toml has none, by what it sees."""
+        if self.says or not self.sees:
+            return self.says
+        if "." in self.sees:
+            return f"whether {self.sees} is at {self.at:g}"
+        return f"whether {f'a {self.part}' if self.part else 'something'} is at {self.sees}"
+
 
 @frozen
 class RobotConfig:

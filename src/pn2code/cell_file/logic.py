@@ -103,7 +103,8 @@ CHANNEL = Section(
         Key(
             "place",
             "text",
-            "A place that two programs share: each token in it is a message. Its colour set is not timed.",
+            "A place that two programs share: each token in it is a message. Its colour set is not timed, and has a "
+            "fixed number of scalars: no list, no union.",
             "a place",
             required=True,
         ),

@@ -90,7 +90,13 @@ def show(
     shown = _described(run, net, values, steps, files, form)
     other = None if compare is None else _described(compare, net, values, steps, files, form)
     names = _names(run, compare) if compare is not None else ("", "")
-    texts = {output: page(shown, other, names=names)}
+    try:
+        texts = {output: page(shown, other, names=names)}
+        said = sentences(differences(shown, other)) if other is not None else []
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as problem:
+        if not any(path is not None and _is_description(path) for path in (run, compare)):
+            raise  # of traces the description is our own
+        _refuse(f"the description of a run is damaged: {problem}", "run the cell again", form)
     if description is not None:
         texts[description] = text_of(shown)
     for path, text in texts.items():
@@ -100,16 +106,25 @@ def show(
         except OSError as problem:
             _refuse(f"cannot write `{path}`: {os_reason(problem)}", "give another file", form)
     typer.echo(f"{output}: {_sentence(shown, texts[output])}")
-    if other is not None:
-        for sentence in sentences(differences(shown, other)):
-            typer.echo(sentence)
-    if refused := shown["course"].get("refused"):
-        typer.echo(
-            f"pn2code: the trace is shown to step {refused['step'] - 1}: the next is not possible in this net "
-            f"({refused['transition']}: {refused['why']})",
-            err=True,
-        )
+    for sentence in said:
+        typer.echo(sentence)
+    runs = ((shown, "trace"),) if other is None else ((shown, "first run"), (other, "second run"))
+    possible = [_is_possible(one, word) for one, word in runs]
+    if not all(possible):
         raise typer.Exit(Exit.MODEL)
+
+
+def _is_possible(shown: Json, word: str) -> bool:
+    """Whether the net permits all steps; says which is the first that it does not."""
+    refused = shown["course"].get("refused")
+    if not refused:
+        return True
+    typer.echo(
+        f"pn2code: the {word} is shown to step {refused['step'] - 1}: the next is not possible in this net "
+        f"({refused['transition']}: {refused['why']})",
+        err=True,
+    )
+    return False
 
 
 def _names(one: Path, other: Path) -> tuple[str, str]:
@@ -128,6 +143,11 @@ def _sentence(shown: Json, text: str) -> str:
     return f"{steps:,} step{'s' * (steps != 1)}{with_arms}, {size:.1f} MB"
 
 
+def _is_description(run: Path) -> bool:
+    """Whether it is said to be a run with its description, and not a trace."""
+    return run.is_dir() or run.suffix == ".json"
+
+
 def _described(
     run: Path,
     net: Path | None,
@@ -138,7 +158,7 @@ def _described(
 ) -> Json:
     from pn2code.replay.description import NoDescription, read
 
-    if not run.is_dir() and run.suffix != ".json":
+    if not _is_description(run):
         return _trace(run, net, values, steps, files, form)
     try:
         return read(run)

@@ -39,6 +39,10 @@ METHODS = {
 _PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "reach"))
 """For reachability and bounds the methods of the two lanes, by round; the last but one is repeated at the end."""
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)
+_ORDERS = (0, 1, 0, 2)
+"""Orders of the places of diagrams, by round: the best one has the longest but one as well."""
+_ORDERS_ALONE = ((0, 1), (0, 1), (0, 2), (0, 3))
+"""The same where diagrams have both lanes."""
 _SIDE_ROUNDS = 3
 """In so many rounds formulas of time are asked that only help with others."""
 REWRITING = "REWRITING"
@@ -355,7 +359,7 @@ class _Portfolio:
         kinds = sorted({self.places[n].part.kind for n in open_})
         drawn = [n for n in open_ if self.places[n].part.kind in KINDS]
         if self.only == METHOD:
-            orders = (number, number + 1) if drawn else ()
+            orders = _ORDERS_ALONE[min(number, len(_ORDERS_ALONE) - 1)] if drawn else ()
             return [self._lane([(METHOD, drawn)], number, i, ends, 2) for i in orders]
         is_drawn = bool(drawn) and not self.only and number > 0
         found = []
@@ -370,7 +374,8 @@ class _Portfolio:
             if tasks:
                 found.append(self._lane(tasks, number, which, ends, 2 + is_drawn))
         if is_drawn:
-            found.append(self._lane([(METHOD, drawn)], number, number - 1, ends, 3))
+            order = _ORDERS[min(number - 1, len(_ORDERS) - 1)]
+            found.append(self._lane([(METHOD, drawn)], number, order, ends, 3))
         return found
 
     def _methods(self, kinds: list[str], number: int, which: int) -> list[str]:

@@ -224,7 +224,13 @@ class Doing:
                     may_run |= told
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
-                    command = until_stop(own, parts_of(contents, standing, 0.0), command)
+                    ways = [
+                        until_stop(own, parts_of(contents, standing, s), command) for s in _SLACKS
+                    ]
+                    command = ways[0]
+                    if len(set(ways)) > 1 and not done.doubt:
+                        nearly = f"`{min(told)}` runs past a part that is beyond its stop"
+                        done = replace(done, doubt=_nearly(nearly), command=command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(own, leg.path)
@@ -431,7 +437,7 @@ class Doing:
 
         found, faults = _tried(contents, doing.standing, handle)
         change, parts = found[0]
-        does = f"`{doing.owner}` {doing.handling.effect} `{change.part}` beside a turntable"
+        does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
         return after, self._expect_apart(doing, change, parts) or doubt
 

@@ -32,11 +32,13 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pn2code.play import saving
 from pn2code.play.described import describe
+from pn2code.play.letters import Letters, text_of
 from pn2code.play.loading import Loaded
 from pn2code.play.page import page
 from pn2code.play.seats import MOST_WAITING, Full, Seat, Seats
 from pn2code.play.trouble import Json, Trouble, of_game
 from pn2code.semantics.game.enabling import GameError
+from pn2code.trace.json_text import is_deep
 from pn2code.web.guard import HOSTS
 
 MOST_TRACE = 200 << 20
@@ -102,28 +104,31 @@ class _Hall:
 
     async def _at(self, socket: WebSocket, seat: Seat, is_new: bool) -> None:
         loop = asyncio.get_running_loop()
-        letters: asyncio.Queue[Json] = asyncio.Queue()
-
-        def tell(said: Json) -> None:
-            loop.call_soon_threadsafe(letters.put_nowait, said)
-
-        seat.tell = tell
-        seat.player.again()
-        state = await loop.run_in_executor(seat.worker, seat.player.view.state)
-        await socket.send_text(_text({"seat": seat.name, "new": is_new, "state": state}))
+        letters = Letters(loop)
+        seat.tell = tell = letters.put
+        state = await loop.run_in_executor(seat.worker, seat.player.again)
+        await socket.send_text(text_of({"seat": seat.name, "new": is_new, "state": state}))
         sending = asyncio.create_task(_send_all(socket, letters))
+        over = asyncio.create_task(letters.over.wait())
         try:
             while True:
-                self._hear(await socket.receive_text(), seat, tell)
+                hearing = asyncio.create_task(socket.receive_text())
+                await asyncio.wait({hearing, over}, return_when=asyncio.FIRST_COMPLETED)
+                if over.done():  # it asks, and does not read the answers
+                    hearing.cancel()
+                    await socket.close(1008)
+                    break
+                self._hear(hearing.result(), seat, tell)
         except (WebSocketDisconnect, KeyError):  # KeyError: a message of bytes
             pass
         finally:
             sending.cancel()
+            over.cancel()
 
     def _hear(self, text: str, seat: Seat, tell: Callable[[Json], None]) -> None:
         """One message: long work is done elsewhere, so that the next one is heard."""
         try:
-            said = json.loads(text)
+            said = None if is_deep(text) else json.loads(text)
         except (ValueError, RecursionError):
             said = None
         if not isinstance(said, dict):
@@ -209,9 +214,16 @@ class _Hall:
             said = f"a trace may have {MOST_TRACE >> 20} MB; `--trace FILE` reads longer ones"
             return JSONResponse({"ok": False, "message": said, "rows": []}, 413)
         loop = asyncio.get_running_loop()
-        done = await loop.run_in_executor(seat.worker, seat.player.load, file)
+
+        def work() -> Json:
+            # The page is told by its WebSocket, in order with what else it is told.
+            done = seat.player.load(file)
+            seat.tell({"state": done.pop("state"), "isWhole": True})
+            return done
+
+        done = await loop.run_in_executor(seat.worker, work)
         remove = BackgroundTask(file.unlink, missing_ok=True)
-        return Response(_text(done), media_type="application/json", background=remove)
+        return Response(text_of(done), media_type="application/json", background=remove)
 
 
 async def _receive(stream: AsyncIterator[bytes], file: Path) -> bool:
@@ -226,23 +238,18 @@ async def _receive(stream: AsyncIterator[bytes], file: Path) -> bool:
     return True
 
 
-async def _send_all(socket: WebSocket, letters: asyncio.Queue[Json]) -> None:
+async def _send_all(socket: WebSocket, letters: Letters) -> None:
     while True:
-        said = await letters.get()
+        text = await letters.next()
         try:
-            await socket.send_text(_text(said))
+            await socket.send_text(text)
         except (RuntimeError, WebSocketDisconnect):
             return
 
 
 async def _part(socket: WebSocket, said: Json) -> None:
-    await socket.send_text(_text(said))
+    await socket.send_text(text_of(said))
     await socket.close()
-
-
-def _text(said: Json) -> str:
-    text = json.dumps(said, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _is_number(value: object) -> bool:

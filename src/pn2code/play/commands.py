@@ -75,9 +75,13 @@ class Player:
             "dead": self._dead,
         }
 
-    def again(self) -> None:
-        """The page was loaded again: it is told everything."""
+    def again(self) -> Json:
+        """The page was loaded again: it is told everything.
+
+        As any command in the thread of the game: what an earlier one has still to say must not count as told.
+        """
         self.view = View(self.session)
+        return self.view.state()
 
     def answer(self, said: Json) -> Json:
         """Carries out a command; the answer has what has changed."""
@@ -233,8 +237,7 @@ class Player:
             done = {"ok": False, "message": trouble.message, "rows": trouble.rows}
         except OSError as problem:
             done = {"ok": False, "message": f"the trace cannot be read: {problem}", "rows": []}
-        self.again()
-        return {**done, "state": self.view.state()}
+        return {**done, "state": self.again()}
 
 
 # --- arguments -------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ def asked(net: FlatNet, config: CellConfig | None) -> dict[int, list[Json]]:
     if config is None:
         return {}
     choices = {
-        sensor.variable: Choice("", sensor.name, sensor.variable, scalar, sensor.says)
+        sensor.variable: Choice("", sensor.name, sensor.variable, scalar, sensor.tells)
         for sensor, scalar in usable(config, net)
     }
     found: dict[int, list[Json]] = {}

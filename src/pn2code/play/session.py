@@ -452,7 +452,6 @@ class Session:
     def _evaluated(self, exp: Any, looks: Any) -> Value:
         game = self.game
         game.enter(game.marking)
-        game.evaluator.steps = game.steps
         found = {symbol: tokens(game, game.marking, place) for symbol, place in looks}
         return game.evaluator.value(exp, found)
 

@@ -14,7 +14,8 @@ def first_difference(a: Json, b: Json) -> Json | None:
     Step 0 is the initial marking; `alike` says how many of the first steps are the same, whatever that was.
 
     Steps are compared by transition, binding, and the tokens that they take and put. A run that goes on where the other
-    has ended differs there, too; times are not compared: the same steps at other times are the same run.
+    has ended differs there, too, unless steps of the other are left out there; so does one whose next step is not
+    possible. Times are not compared: the same steps at other times are the same run.
     """
     one, two = _Steps(a), _Steps(b)
     shared = min(one.count, two.count)
@@ -31,7 +32,7 @@ def first_difference(a: Json, b: Json) -> Json | None:
             "what": what,
             "t": [one.time(changed), two.time(changed)],
         }
-    if at == shared and one.count == two.count:
+    if at == shared and one.has_ended_like(two):
         return None
     return {
         "step": at + 1,
@@ -39,6 +40,11 @@ def first_difference(a: Json, b: Json) -> Json | None:
         "what": [one.text(at), two.text(at)],
         "t": [one.time(at), two.time(at)],
     }
+
+
+def is_cut(described: Json) -> bool:
+    """Whether steps at the end are left out of a description."""
+    return bool(described["verdict"].get("word") == "cut")
 
 
 class _Steps:
@@ -52,6 +58,8 @@ class _Steps:
         self.kinds = [(t["name"], *t["variables"]) for t in self._transitions]
         self.transition = unpacked(course["transition"]).astype(np.int64)
         self.count = len(self.transition)
+        self.refused = course.get("refused")
+        self.is_cut = is_cut(described)
         self._binding = unpacked(course["binding"])
         self._t = unpacked(course["time"])
         sizes = np.array([len(t["variables"]) for t in self._transitions], np.int64)
@@ -76,6 +84,13 @@ class _Steps:
         mine, theirs = self._binding[:bound], other._binding[:bound]
         odd = np.flatnonzero(mine != as_here[theirs]) if bound else np.zeros(0, np.int64)
         return int(np.searchsorted(self._offset, odd[0], side="right")) - 1 if odd.size else at
+
+    def has_ended_like(self, other: _Steps) -> bool:
+        """Of runs of which one begins like the other: whether nothing is known of another step after that."""
+        shorter = min(self, other, key=lambda run: run.count)
+        if self.count != other.count:
+            return shorter.is_cut
+        return self.is_cut or other.is_cut or self.refused == other.refused
 
     def _changes(self, most: int, number: dict[tuple[str, str, str], int]) -> Numbers:
         """What the first steps take and put: rows of step, token and how many, in a fixed order."""
@@ -142,6 +157,8 @@ class _Steps:
 
     def text(self, step: int) -> str:
         """What occurred in a step (from 0); what is said where the run has ended."""
+        if step >= self.count and self.refused:
+            return f"the next step is not possible: {self.refused['transition']}: {self.refused['why']}"
         if step >= self.count:
             return "the run has ended"
         t = self._transitions[int(self.transition[step])]

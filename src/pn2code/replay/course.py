@@ -17,16 +17,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from pn2code.base.readable import readable
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import FlatNet
 from pn2code.replay.arrays import packed, packed_reals
+from pn2code.semantics.game.constant import constant_transitions
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking, variable_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import TEXTS
-from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.data import Data, Timed, Value, real_text
 from pn2code.semantics.values.multiset import MultiSet
 
 LONGEST = 4000
 """Characters of a value that are shown; the rest is cut off, and the text says so."""
+MOST_DONE = 50_000
+"""Elements of which it is remembered what they change."""
 _FEWEST = 512
 """Changes between two keys, at least."""
 
@@ -41,6 +45,13 @@ class Course:
         self._texts: dict[str, int] = {}
         self._tokens: list[dict[Token, int]] = [{} for _ in net.places]
         self._token_place = array.array("q")
+        self._is_rounded = False
+        self._reals = frozenset(
+            s.uid
+            for t in net.transitions
+            for s in t.variables
+            if may_hold_reals(s.type, net.program.datatypes)
+        )
         self._before: tuple[PlaceMarking, ...] = ()
         self._time = array.array("d")
         self._clock = array.array("d")
@@ -55,7 +66,10 @@ class Course:
         self._key_token = array.array("q")
         self._key_count = array.array("q")
         self._since_key = 0
-        self._values: dict[tuple[int, Value], int] = {}
+        self._constant = constant_transitions(net)
+        self._seen: set[int] = set()
+        # What an element has done, by its identity: it is held here, so no other one gets that.
+        self._done: dict[int, tuple[BindingElement, list[int], list[tuple[int, int]]]] = {}
 
     @property
     def steps(self) -> int:
@@ -72,10 +86,26 @@ class Course:
 
     def step(self, game: Game, occurred: BindingElement, time: float) -> None:
         """The game has come to its marking by this occurrence, at this moment of the axis."""
-        t = self._net.transitions[occurred.transition]
-        self._transition.append(t.index)
+        self._transition.append(occurred.transition)
         self._time.append(time)
         self._clock.append(game.marking.time)
+        known = self._done.get(id(occurred))
+        if known is None:
+            self._look(game, occurred)
+        else:
+            self._binding.extend(known[1])
+            for token, by in known[2]:
+                self._change(token, by)
+        self._before = game.marking.places
+        self._offset.append(len(self._changed))
+        if self._since_key > max(_FEWEST, 2 * len(self._held)):
+            self._key()
+
+    def _look(self, game: Game, occurred: BindingElement) -> None:
+        """What an occurrence has changed; the same element changes the same the next time, if its transition is one
+        that does."""
+        t = self._net.transitions[occurred.transition]
+        values, changes = len(self._binding), len(self._changed)
         bound = dict(occurred.values)
         for s in t.variables:
             self._binding.append(
@@ -85,10 +115,21 @@ class Course:
         for place in dict.fromkeys(a.place for a in t.arcs):
             if after[place] is not self._before[place]:
                 self._difference(place, self._before[place], after[place])
-        self._before = after
-        self._offset.append(len(self._changed))
-        if self._since_key > max(_FEWEST, 2 * len(self._held)):
-            self._key()
+        if t.index in self._constant and self._is_back(occurred):
+            if len(self._done) >= MOST_DONE:
+                self._done.clear()
+            rows = list(zip(self._changed[changes:], self._count[changes:], strict=True))
+            self._done[id(occurred)] = occurred, list(self._binding[values:]), rows
+
+    def _is_back(self, occurred: BindingElement) -> bool:
+        """Whether it has been there before; most elements of some runs are unlike all others."""
+        number = hash(occurred)
+        if number in self._seen:
+            return True
+        if len(self._seen) >= MOST_DONE:
+            self._seen.clear()
+        self._seen.add(number)
+        return False
 
     def _difference(self, place: int, before: PlaceMarking, after: PlaceMarking) -> None:
         left, came = _counted(before), _counted(after)
@@ -124,10 +165,13 @@ class Course:
         return known[token]
 
     def _value(self, transition: int, symbol: Any, value: Value) -> int:
+        if symbol.uid in self._reals and not self._is_rounded:
+            self._is_rounded = _is_rounded(value)
         return self._text(variable_text(TEXTS, symbol, value))
 
     def _text(self, text: str) -> int:
         if len(text) > LONGEST:
+            self._is_rounded = True
             text = f"{text[:LONGEST]}… ({len(text) - LONGEST:,} more characters)"
         return self._texts.setdefault(text, len(self._texts))
 
@@ -153,6 +197,7 @@ class Course:
             },
             "tokens": rows,
             "texts": list(self._texts),
+            "rounded": self._is_rounded,
         }
 
     def _order(self) -> tuple[Any, dict[str, Any]]:
@@ -169,6 +214,7 @@ class Course:
                 value, stamp = token
                 return keys[value], -stamp if stamp is not None else 0
 
+            self._is_rounded = self._is_rounded or any(map(_is_rounded, own))
             for token in sorted(own, key=position):
                 order[own[token]] = len(place_of)
                 value, stamp = token
@@ -183,6 +229,18 @@ class Course:
             "text": packed(_numbers(text_of)),
             "stamp": packed(_numbers(stamp_of)),
         }
+
+
+def _is_rounded(value: Any) -> bool:
+    """Whether a value has a real that its text does not tell from all others."""
+    match value:
+        case float():
+            return value == value and float(real_text(value).replace("~", "-")) != value
+        case tuple():
+            return any(map(_is_rounded, value))
+        case Data(argument=argument):
+            return argument is not None and _is_rounded(argument)
+    return False
 
 
 def _numbers(values: array.array[Any]) -> Any:

@@ -9,6 +9,7 @@ docs/replay.md says what is in it.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -47,7 +48,8 @@ def read(path: Path) -> Json:
     try:
         if file.stat().st_size > LARGEST:
             raise NoDescription(f"`{file}` has more than {LARGEST:,} bytes")
-        data = json.loads(file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
+        data = json.loads(text, parse_constant=_no_number, parse_float=_finite)
     except FileNotFoundError:
         raise NoDescription(
             f"there is no `{file}`: `pn2code run` writes it; of a trace, name the net as well"
@@ -60,6 +62,16 @@ def read(path: Path) -> Json:
     if why is not None:
         raise NoDescription(f"`{file}` {why}")
     return dict(data)
+
+
+def _no_number(word: str) -> float:
+    raise ValueError(f"`{word}` is no number of JSON")
+
+
+def _finite(digits: str) -> float:
+    if math.isfinite(value := float(digits)):
+        return value
+    raise ValueError(f"the number `{digits[:40]}` is too large")
 
 
 def problem_of(data: Any) -> str | None:
@@ -77,6 +89,25 @@ def problem_of(data: Any) -> str | None:
         for name in names:
             if name not in data[part]:
                 return f"is incomplete: its `{part}.{name}` is missing"
+    return _damaged(data)
+
+
+def _damaged(data: Json) -> str | None:
+    """Which of the members that are said in words is not of its form."""
+    course, final = data["course"], data["verdict"].get("final", [])
+    steps, rows = course["steps"], course["transition"]
+    if not isinstance(rows, dict) or type(steps) is not int or steps != rows.get("length"):
+        return "is damaged: its `course.steps` is not the number of its steps"
+    if not isinstance(final, list) or not all(isinstance(name, str) for name in final):
+        return "is damaged: its `verdict.final` is no list of names"
+    refused = course.get("refused")
+    if refused is not None and not (
+        isinstance(refused, dict)
+        and type(refused.get("step")) is int
+        and isinstance(refused.get("transition"), str)
+        and isinstance(refused.get("why"), str)
+    ):
+        return "is damaged: its `course.refused` does not say which step, and why"
     return None
 
 

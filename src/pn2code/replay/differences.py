@@ -1,6 +1,7 @@
-"""Two runs side by side: the first difference of their steps, of their messages, and of the poses of their arms.
+"""Two runs side by side: the first difference of their steps, of their messages, and of the poses of their arms; and
+how they ended.
 
-    differences(one, other)     # {"step": ..., "message": None, "pose": {...}}
+    differences(one, other)     # {"step": ..., "message": None, "pose": {...}, "end": None, ...}
 
 Messages are compared channel by channel, since messages on different channels may overtake each other without any
 difference for supervisor and robots. The pose of an arm is compared where its program makes a step, in both runs at the
@@ -9,12 +10,14 @@ same step, so that a run that was faster is no other run.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from pn2code.replay.arrays import Numbers, unpacked
-from pn2code.replay.compare import first_difference
+from pn2code.replay.compare import first_difference, is_cut
+from pn2code.replay.course import LONGEST
 from pn2code.replay.description import Json
 from pn2code.replay.motion import interpolated
 
@@ -24,27 +27,91 @@ APART_RAD = 1e-3
 """So does a joint."""
 
 
+_PARTS = {"step": "steps", "message": "messages", "pose": "poses", "end": "end"}
+
+
 def differences(a: Json, b: Json) -> Json:
-    """The first other `step`, `message` and `pose`; null where there is none, or nothing to compare."""
+    """The first other `step`, `message` and `pose`, and another `end`; null where there is none, or nothing to compare.
+
+    `compared` says which of them could be compared, `same` in a sentence that these are the same (if they are), `notes`
+    what else is to be known of the comparison.
+    """
     step = first_difference(a, b)
     shared = min(a["course"]["steps"], b["course"]["steps"])
     if step is not None:
         shared = step["alike"]
-    return {"step": step, "message": _first_message(a, b), "pose": _first_pose(a, b, shared)}
+    compared = ["step"]
+    if a.get("happenings") and b.get("happenings"):
+        compared.append("message")
+    if _arms(a).keys() & _arms(b).keys():
+        compared.append("pose")
+    if not any(is_cut(run) or run["course"].get("refused") for run in (a, b)):
+        compared.append("end")
+    parts = [_PARTS[kind] for kind in compared if kind != "end"]
+    what = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
+    return {
+        "step": step,
+        "message": _first_message(a, b),
+        "pose": _first_pose(a, b, shared),
+        "end": _other_end(a, b) if "end" in compared else None,
+        "compared": compared,
+        "same": f"both runs have the same {what}",
+        "notes": list(_notes(a, b)),
+    }
 
 
 def sentences(found: Json) -> list[str]:
-    """The differences in words, a line each."""
-    kinds = {"step": "step", "message": "message", "pose": "pose"}
+    """The differences in words, a line each, and what is to be known of them."""
     rows = []
-    for kind, word in kinds.items():
+    for kind in _PARTS:
         if (one := found[kind]) is None:
             continue
         number = f" {one['step']}" if kind == "step" else ""
-        rows.append(
-            f"first other {word}{number}: {one['what'][0]}; in the second run {one['what'][1]}"
+        first = "other end" if kind == "end" else f"first other {kind}{number}"
+        here, there = map(_short, one["what"])
+        rows.append(f"{first}: {here}; in the second run {there}")
+    return [*(rows or [found["same"]]), *found["notes"]]
+
+
+def _short(text: str) -> str:
+    """For a terminal: what values and messages say is data, and no commands for it."""
+    plain = "".join(c if c.isprintable() else "\ufffd" for c in text[:LONGEST])
+    return plain if len(text) <= LONGEST else f"{plain}… ({len(text) - LONGEST:,} more characters)"
+
+
+def _notes(a: Json, b: Json) -> Iterator[str]:
+    for word, run in (("first", a), ("second", b)):
+        if is_cut(run):
+            n = run["course"]["steps"]
+            yield f"steps of the {word} run after the first {n:,} are left out, and not compared"
+    arms = [_arms(run) for run in (a, b)]
+    if all(arms):
+        for name in sorted(arms[0].keys() ^ arms[1].keys()):
+            yield f"only one of the runs has the arm {name}"
+    if any(run["course"].get("rounded", True) for run in (a, b)):
+        yield (
+            "values are compared as the page shows them: reals with 12 digits, texts to their first "
+            f"{LONGEST:,} characters"
         )
-    return rows or ["both runs have the same steps, messages and poses"]
+
+
+# --- how they ended ------------------------------------------------------------------------------
+
+
+def _other_end(a: Json, b: Json) -> Json | None:
+    """How both runs ended, if that is not the same."""
+    what = [_end(run) for run in (a, b)]
+    return {"what": what, "t": [a["end"], b["end"]]} if what[0] != what[1] else None
+
+
+def _end(run: Json) -> str:
+    verdict, loop = run["verdict"], run["course"].get("loop")
+    text = str(verdict.get("word") or "the run stops without an end")
+    if verdict.get("reason"):
+        text += f": {verdict['reason']}"
+    if final := verdict.get("final"):
+        text += f", with a token in {', '.join(sorted(map(str, final)))}"
+    return text if loop is None else f"{text}, repeated from step {loop} on"
 
 
 # --- messages ------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from pn2code.replay.description import VERSION, Json
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
 
@@ -59,7 +61,9 @@ def describe(
         reader = _Lines(lines, most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
-        course, refused = follow(reader, net, storage, by_steps=counts, files=files)
+        course, refused = follow(
+            reader, net, storage, by_steps=counts, files=files, loop=claimed_loop(trace)
+        )
     end = reader.end or {}
     return {
         "pn2code": {"run": VERSION},
@@ -68,7 +72,7 @@ def describe(
         "clock": "steps" if counts else "seconds",
         "end": float(course.steps) if counts else max(reader.latest, 0.0),
         "verdict": {
-            "word": "cut" if reader.is_cut else str(end.get("why", "")),
+            "word": "cut" if reader.is_cut else _word(end),
             "reason": str(end.get("reason", "")),
             "final": [str(p) for p in end.get("final", ())],
         },
@@ -93,11 +97,13 @@ def follow(
     *,
     by_steps: bool = False,
     files: Files | None = None,
+    loop: int | str | None = ALL,
 ) -> tuple[Course, Json | None]:
     """The course of a trace through its net, as the token game repeats it, and where that ends before the trace does.
 
     Args:
         by_steps: the axis counts steps; else it is that of the times in the trace.
+        loop: as for `replay_lines`.
     """
     course = Course(net)
     latest = 0.0
@@ -107,11 +113,10 @@ def follow(
         if occurred is None:
             course.begin(game)
             return
-        t = line.get("t")
-        latest = max(latest, float(t)) if isinstance(t, int | float) else latest
+        latest = max(latest, _moment(line))
         course.step(game, occurred, float(course.steps + 1) if by_steps else latest)
 
-    result = replay_lines(lines, net, storage, watch=watch, files=files)
+    result = replay_lines(lines, net, storage, watch=watch, files=files, loop=loop)
     return course, _refusal(result)
 
 
@@ -119,6 +124,12 @@ def _refusal(result: ReplayResult) -> Json | None:
     if result.ok:
         return None
     return {"step": result.steps + 1, "transition": result.transition, "why": result.why}
+
+
+def _word(end: Json) -> str:
+    """Why a trace says that it ended; that steps are left out is for us to say."""
+    why = str(end.get("why", ""))
+    return '"cut"' if why == "cut" else why
 
 
 class _Lines:
@@ -165,9 +176,18 @@ class _Lines:
             yield text
 
     def _note(self, line: Json) -> None:
-        t = line.get("t")
-        if isinstance(t, int | float):
-            self.latest = max(self.latest, float(t))
+        self.latest = max(self.latest, _moment(line))
+
+
+def _moment(line: Mapping[str, Any]) -> float:
+    """The time of a line; 0 where it has none, or one that no axis has."""
+    t = line.get("t")
+    if isinstance(t, bool) or not isinstance(t, int | float):
+        return 0.0
+    try:
+        return float(t) if math.isfinite(t) else 0.0
+    except OverflowError:  # a whole number that is too large
+        return 0.0
 
 
 def _object(text: str) -> Json:

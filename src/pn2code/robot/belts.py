@@ -76,6 +76,6 @@ def _stopped(device: CellRobot, parts: Parts, told: Along, axis: ExternalAxis) -
         stop = (frame @ matrix_of(parts.cell.places[belt.belt.stop]))[0, 3]
         for part in (p for b in line for p in parts.riders(f"{device.name}/{b.name}")):
             left = float(stop - (frame @ parts.world(part))[0, 3])
-            if left > -part.kind.tolerance:
+            if left > -part.kind.tolerance - parts.slack:
                 most = min(most, max(left, 0.0))
     return replace(told, position=most)

@@ -46,6 +46,11 @@ class Held:
         """Whether the part can be taken away."""
         return self.gap(q) < self.clamp.axis.upper - SAME
 
+    def is_at(self, cell: RobotCell, kind: PartKind, T_world_part: Array) -> bool:
+        """Whether a part is where the clamp holds one."""
+        spot = matrix_of(cell.places[self.clamp.place])
+        return difference(T_world_part, spot)[0] <= kind.tolerance
+
     def words(self, who: str, part: str, q: Array) -> str:
         """That it cannot, for people."""
         gap, most = 1000.0 * self.gap(q), 1000.0 * self.clamp.axis.upper
@@ -60,9 +65,9 @@ def holding(cell: RobotCell, kind: PartKind, T_world_part: Array) -> Iterator[He
     for device in cell.devices:
         for clamp in device.axes.clamps:
             if clamp.place:
-                spot = matrix_of(cell.places[clamp.place])
-                if difference(T_world_part, spot)[0] <= kind.tolerance:
-                    yield Held(device, clamp)
+                held = Held(device, clamp)
+                if held.is_at(cell, kind, T_world_part):
+                    yield held
 
 
 def taken_along(
@@ -75,6 +80,30 @@ def taken_along(
     for part in parts:
         if part.holder == robot.name or part.plate in plates:
             yield part, carried_to(robot, q, part)
+
+
+def closed_on(
+    cell: RobotCell,
+    held: Held,
+    robot: CellRobot,
+    way: tuple[Array, Array],
+    going: tuple[Iterable[Part], Collection[str]],
+) -> str:
+    """That a clamp has closed on a part with which a robot is on its way, for people; "": it has not.
+
+    One that may be empty only lets nothing out that was in it before.
+
+    Args:
+        way: where the robot stood when it began, and where it is now.
+        going: the parts of the cell, and the robot's turntables and belts that move.
+    """
+    for part, frame in taken_along(robot, way[0], *going):
+        places = [carried_to(robot, way[1], part)]
+        if held.clamp.may_be_empty:
+            places.append(frame)
+        if all(held.is_at(cell, part.kind, x) for x in places):
+            return f"`{held.name}` closes on `{part.name}` while `{robot.name}` takes that along"
+    return ""
 
 
 @frozen(eq=False)
@@ -93,13 +122,18 @@ def closes(device: CellRobot, command: Command) -> bool:
     return any(c.axis.name in told for c in device.axes.clamps if c.place and not c.may_be_empty)
 
 
-def closing(device: CellRobot, before: Array, after: Array) -> Iterator[Held]:
-    """The clamps that a move closes, and that must not be empty then."""
+def shut(device: CellRobot, before: Array, after: Array) -> Iterator[Held]:
+    """The clamps that a move closes, of which it is known where the part is that they hold."""
     for clamp in device.axes.clamps:
         held = Held(device, clamp)
         is_closing = held.gap(after) < held.gap(before) - SAME
-        if clamp.place and not clamp.may_be_empty and is_closing and held.holds(after):
+        if clamp.place and is_closing and held.holds(after):
             yield held
+
+
+def closing(device: CellRobot, before: Array, after: Array) -> Iterator[Held]:
+    """Those of them that must not be empty then."""
+    return (held for held in shut(device, before, after) if not held.clamp.may_be_empty)
 
 
 def nearest(cell: RobotCell, held: Held, parts: Iterable[tuple[Part, Array]]) -> Near:

@@ -32,6 +32,8 @@ REST_GAP = 0.005
 """m: a part that is released may fall so far."""
 SEARCHED = 0.5
 """m: what is further below is not told."""
+_ROUNDING = 1e-6
+"""m: what is further away by no more is as far away: numbers of a net and of cell.toml add up so well."""
 _STEEP = 0.7
 """Of the z of a normal: at most 45 degrees."""
 _ANY = 0.1
@@ -84,7 +86,7 @@ class Rest:
         """Why it does not stand, as a clause; "": it does. `slack` (m): by how much it may be worse."""
         if not self.on:
             under = (
-                f"`{self.below}`, the nearest thing below it, is {1000.0 * self.gap:.1f} mm away"
+                f"`{self.below}`, the nearest thing below it, is {_shown(self.gap)} mm away"
                 if self.below
                 else f"there is nothing below it within {1000.0 * SEARCHED:g} mm"
             )
@@ -94,6 +96,15 @@ class Rest:
             names = " and ".join(f"`{x}`" for x in self.on)
             return f"where it tips over: its middle is not above what it stands on, {names}{off}"
         return ""
+
+
+def _shown(gap: float) -> str:
+    """A gap in mm that is too wide, with as many digits as tell it from what is permitted."""
+    return next(
+        text
+        for digits in (1, 2, 3, 6, 12)
+        if float(text := f"{1000.0 * gap:.{digits}f}") > 1000.0 * REST_GAP or digits == 12
+    )
 
 
 @frozen(eq=False)
@@ -152,6 +163,7 @@ class Ground:
         on: set[str] = set()
         areas: list[Array] = []
         below, gap = "", math.inf
+        reach = REST_GAP + slack + _ROUNDING
         for name, top in self._near(low, high, half, others, plates):
             found = []
             # What is round has a narrow face, and much that is nearly as low: its surface is between these two.
@@ -164,9 +176,9 @@ class Ground:
                 continue
             if least < gap:
                 below, gap = name, least
-            if least <= REST_GAP + slack:
+            if least <= reach:
                 on.add(name)
-                areas += [part_below(common, gaps, REST_GAP + slack) for common, gaps in found]
+                areas += [part_below(common, gaps, reach) for common, gaps in found]
         if gap > SEARCHED:
             below = ""
         area = around(np.vstack(areas)) if areas else np.zeros((0, 2))

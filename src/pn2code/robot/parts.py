@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -81,7 +81,7 @@ class Parts:
 
     Args:
         turning: turntables that turn just now, on which nothing can be handled.
-        slack: m, by how much what a part stands on may be off from what is asked for.
+        slack: m, by how much a part that is handled, and what it stands on, may be off from what is asked for.
         settled: parts that now turn with another turntable, or with none, because of what was taken away last.
     """
 
@@ -230,9 +230,12 @@ class Parts:
 
     def plates_under(self, part: Part) -> set[str]:
         """The turntables and belts on which a part stands, also by parts that do."""
-        on = self.rest(part).on
-        goes = {x: self.present[x].plate for x in on if x in self.present}
-        return {x for x in on if x in self._plates} | set(goes.values()) - {""}
+        return self._plates_in(self.rest(part).on)
+
+    def _plates_in(self, on: Iterable[str]) -> set[str]:
+        """Those among what something stands on, and those with which it goes."""
+        goes = {self.present[x].plate for x in on if x in self.present}
+        return {x for x in on if x in self._plates} | goes - {""}
 
     def run_out(self, line: Set[str]) -> None:
         """Belts that have run as one come to rest. Raises PartFault if the middle of something has come off their end.
@@ -258,6 +261,7 @@ class Parts:
                     f"{does} its middle is {1000.0 * off:.1f} mm beyond the end, "
                     f"where nothing takes it further{other}, part at {where}"
                 )
+            self._expect_at_rest(f"`{part.plate}` takes `{part.name}` along", rest.on)
         self._settle_again()
 
     def _beyond(self, plate: str, part: Part) -> float:
@@ -306,9 +310,9 @@ class Parts:
         if not standing:
             raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
         offs = {p.name: _off(kind, self.world(p), tcp) for p in standing}
-        near = min(standing, key=lambda p: offs[p.name])
+        near = self._nearest([(*offs[p.name], p) for p in standing])
         way, turn = offs[near.name]
-        if way > kind.tolerance or turn > kind.angle:
+        if way > kind.tolerance + self.slack or turn > kind.angle + self.slack:
             off = f"{1000.0 * way:.1f} mm"
             off += f" and {math.degrees(turn):.1f} deg" if turn > kind.angle else ""
             raise PartFault(
@@ -375,6 +379,9 @@ class Parts:
                 raise PartFault(
                     f"`{robot}` releases `{on}` with `{part.name}` on it, {trouble}, part at {describe(pose)}"
                 )
+            self._expect_at_rest(
+                f"`{robot}` releases `{on}` with `{part.name}` on it,", rest.on, " also"
+            )
             on_plate = pose_of(part.frame) if part.plate else None
             self.settled += (
                 PartChange("releases", part.name, pose, rest.on, part.plate, on_plate),
@@ -394,11 +401,18 @@ class Parts:
     def _put_down(self, does: str, effect: str, part: Part, on: tuple[str, ...]) -> PartChange:
         """A part stands from now on; `part` has its frame in the world."""
         plate = self._plate_of(on)
-        if plate in self.turning:
-            raise PartFault(f"{does} on `{plate}` while that {self._ground.plates[plate].does}")
+        self._expect_at_rest(does, on)
         kept = self._keep(part, part.frame, plate)
         on_plate = pose_of(kept.frame) if plate else None
         return PartChange(effect, part.name, pose_of(part.frame), on, plate, on_plate)
+
+    def _expect_at_rest(self, does: str, on: Iterable[str], what: str = "") -> None:
+        """What is put down does not stand on a turntable or belt that moves, or on what goes with one."""
+        if moving := sorted(self.turning & self._plates_in(on)):
+            plate = moving[0]
+            raise PartFault(
+                f"{does}{what} on `{plate}` while that {self._ground.plates[plate].does}"
+            )
 
     def _remove(self, who: str, kind: PartKind, place: str) -> PartChange:
         there = self._at(place, kind)
@@ -507,14 +521,25 @@ class Parts:
         )
 
     def _at(self, place: str, kind: PartKind) -> Part | None:
-        """The part that stands at a place: those of the kind first."""
+        """The part that stands at a place: those of the kind first, the nearest of them."""
         spot = matrix_of(self.cell.places[place])
-        near = [
-            p
+        offs = [
+            (difference(self.world(p), spot)[0], 0.0, p)
             for p in self.present.values()
-            if not p.holder and difference(self.world(p), spot)[0] <= p.kind.tolerance
+            if not p.holder
         ]
-        return min(near, key=lambda p: p.kind is not kind, default=None)
+        near = [x for x in offs if x[0] <= x[2].kind.tolerance + self.slack]
+        own = [x for x in near if x[2].kind is kind]
+        return self._nearest(own or near) if near else None
+
+    def _nearest(self, offs: list[tuple[float, float, Part]]) -> Part:
+        """The part that is nearest (m), of these the one that is turned least (rad).
+
+        With more slack the last one that is as near: where that matters, what is done comes to something else.
+        """
+        best = min(x[:2] for x in offs)
+        same = [p for *off, p in offs if off[0] - best[0] <= max(self.slack, 0.0)]
+        return same[-1] if self.slack > 0.0 else next(p for *off, p in offs if tuple(off) == best)
 
     def _add(self, kind: PartKind, frame: Array) -> Part:
         part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, np.asarray(frame))

@@ -6,12 +6,13 @@ lift p   ->  pose(p.x, p.y, p.z + 100 mm, p.rx, p.ry, p.rz)
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, TRecord, Type
+from pn2code.ml.typing.matches import Coverage, coverage
 from pn2code.robot_scripts.failing import PARTIAL
 from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.values import (
@@ -267,37 +268,45 @@ class Evaluator:
             case _:
                 raise UnsupportedError("this is not a function", span)
 
-    def _rules(
-        self,
-        rules: tuple[core.Rule, ...],
-        value: Value,
-        env: Env,
-        span: Span,
-        seen: frozenset[int] = frozenset(),
-    ) -> Value:
-        """The first rule whose pattern matches; the rules must cover everything.
+    def _rules(self, rules: tuple[core.Rule, ...], value: Value, env: Env, span: Span) -> Value:
+        """The first rule whose pattern matches; the rules must cover everything."""
+        ways: list[tuple[t.Expression, core.Rule, Env]] = []
+        found = self._coverage(rules)
+        for index, rule in enumerate(rules):
+            if found is not None and index in found.unreached:
+                continue
+            inner = dict(env)
+            test = conjunction(self.match(rule.pattern, value, inner))
+            if test != FALSE:
+                ways.append((test, rule, inner))
+            if test == TRUE:
+                break
+        if not ways:
+            raise UnsupportedError("no rule matches, which a robot script cannot handle", span)
+        if ways[-1][0] != TRUE and (found is None or found.missing is not None):
+            missing = found.missing if found is not None else None
+            what = f"no rule covers `{missing[0]}`" if missing else "no rule may match"
+            raise UnsupportedError(f"{what}, which a robot script cannot handle", span)
+        return self._first(ways, span)
 
-        `seen`: the constructors that the rules before have taken.
-        """
-        rule, *others = rules
-        inner = dict(env)
-        test = conjunction(self.match(rule.pattern, value, inner))
-        if isinstance(rule.pattern, core.PCon) and rule.pattern.argument is None:
-            seen |= {rule.pattern.constructor.tag}
-            if len(seen) == rule.pattern.constructor.siblings and test != FALSE:
-                test = TRUE
-        if test == TRUE:
-            return self.evaluate(rule.body, inner)
+    def _first(self, ways: Sequence[tuple[t.Expression, core.Rule, Env]], span: Span) -> Value:
+        """The first of these whose condition is true, which is the last one if no other is."""
+        (test, rule, inner), *others = ways
         if not others:
-            raise UnsupportedError("no rule may match, which a robot script cannot handle", span)
-        if test == FALSE:
-            return self._rules(tuple(others), value, env, span, seen)
+            return self.evaluate(rule.body, inner)
         return self._alternatives(
             test,
             lambda: self.evaluate(rule.body, inner),
-            lambda: self._rules(tuple(others), value, env, span, seen),
+            lambda: self._first(others, span),
             span,
         )
+
+    def _coverage(self, rules: tuple[core.Rule, ...]) -> Coverage | None:
+        """What the rules leave open, and which are never reached; None if it is not known."""
+        patterns = [rule.pattern for rule in rules]
+        if any(map(_compares, patterns)):
+            return None
+        return coverage([[p] for p in patterns], self.program.datatypes)
 
     def match(self, pattern: core.Pat, value: Value, env: Env) -> list[t.Expression]:
         """Binds the pattern's variables in `env`; the conditions under which it matches.
@@ -339,3 +348,19 @@ class Evaluator:
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
+
+
+def _compares(pattern: core.Pat) -> bool:
+    """Whether it compares with what is known elsewhere, so that its form does not say what it covers."""
+    match pattern:
+        case core.PVar(symbol):
+            return symbol.colset is not None
+        case core.PEqual():
+            return True
+        case core.PRecord(fields):
+            return any(_compares(p) for _, p in fields)
+        case core.PCon(_, argument, _):
+            return argument is not None and _compares(argument)
+        case core.PAs(_, inner):
+            return _compares(inner)
+    return False

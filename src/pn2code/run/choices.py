@@ -83,7 +83,7 @@ def choices_of(
         for name in program.sensors:
             if name in sensors:
                 sensor, scalar = sensors[name]
-                found[party, name] = Choice(party, name, sensor.variable, scalar, sensor.says)
+                found[party, name] = Choice(party, name, sensor.variable, scalar, sensor.tells)
     return found
 
 

@@ -28,7 +28,16 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
-from pn2code.robot.clamps import closing, holding, nearest, on_nothing, taken_along
+from pn2code.robot.clamps import (
+    Held,
+    closed_on,
+    closing,
+    holding,
+    nearest,
+    on_nothing,
+    shut,
+    taken_along,
+)
 from pn2code.robot.commands import (
     Command,
     Handling,
@@ -507,6 +516,23 @@ class Engine:
             near = nearest(self.cell, held, there)
             if near.off > 0.0:
                 raise CellStoppedError(f"{robot.at(robot.line)}: {on_nothing(held, near)}")
+        for held in shut(device, ends[0], ends[1]):
+            self._expect_at_rest(robot, held)
+
+    def _expect_at_rest(self, robot: RobotRunner, held: Held) -> None:
+        """Nobody is on the way with the part on which a clamp has just closed."""
+        parts = self.parts.parts.present.values()
+        for other in self._arms():
+            motion = other.motion
+            if other.arm is None or motion is None or not isinstance(motion.command, Move):
+                continue
+            if motion.ends <= self.now + 1e-12:
+                continue
+            arm = other.arm.robot
+            way = motion.trajectory.q(0.0), motion.q(self.now)
+            why = closed_on(self.cell, held, arm, way, (parts, turned(arm, motion)))
+            if why:
+                raise CellStoppedError(f"{robot.at(robot.line)}: {why}")
 
     def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 
 from pn2code.base.frozen import frozen
-from pn2code.monitors.statistics import Number, Untimed
+from pn2code.monitors.statistics import Number
 
 LEVELS = (90, 95, 99)
 """Per cent."""
@@ -50,38 +51,59 @@ def critical_point(level: int, freedom: int) -> float:
     return _POINTS[level][row]
 
 
+def _root(x: Fraction) -> float:
+    """The square root, also of what is too large or too small for a float."""
+    if not x:
+        return 0.0
+    shift = (x.numerator.bit_length() - x.denominator.bit_length()) // 2
+    return _number(Fraction(math.sqrt(x / Fraction(4) ** shift)) * Fraction(2) ** shift)
+
+
+def _number(x: Fraction) -> float:
+    """The nearest float; infinite beyond the largest."""
+    try:
+        return float(x)
+    except OverflowError:
+        return math.inf if x > 0 else -math.inf
+
+
 @frozen
 class Average:
     """What independent observations say.
 
     Args:
         count: how many they are.
-        average, std, min, max: of them.
+        average, min, max: of them.
         half_lengths: per cent -> half the length of the confidence interval around the average; None for fewer than
-            two observations, of which nothing can be said.
+            two observations, of which nothing can be said, and where one is no finite number.
+        std: None where one is no finite number.
     """
 
     count: int
     average: float
     half_lengths: dict[int, float] | None
-    std: float
+    std: float | None
     min: Number
     max: Number
 
     @staticmethod
     def of(observations: Sequence[Number]) -> Average:
-        """Of observations."""
-        s = Untimed()
-        for x in observations:
-            s.update(x)
-        n, values = len(observations), s.values()
-        variance = float(values["variance"])
+        """Of observations. Computed exactly: they may be large beside their differences, such as moments."""
+        n = len(observations)
+        if any(isinstance(x, float) and not math.isfinite(x) for x in observations):
+            return Average(
+                n, sum(observations) / n, None, None, min(observations), max(observations)
+            )
+        own = [Fraction(x) for x in observations]
+        mean = sum(own, Fraction()) / n
+        variance = sum(((x - mean) ** 2 for x in own), Fraction()) / max(n - 1, 1)
         found = None
         if n > 1:
-            root = math.sqrt(variance / n)
+            root = _root(variance / n)
             found = {level: critical_point(level, n - 1) * root for level in LEVELS}
-        average, std = float(values["avg"]), float(values["std"])
-        return Average(n, average, found, std, values["min"], values["max"])
+        return Average(
+            n, _number(mean), found, _root(variance), min(observations), max(observations)
+        )
 
     def row(self) -> dict[str, Number | None]:
         """For programs."""

@@ -142,7 +142,9 @@ def text(file: str, found: Replications, *, timed: bool) -> str:
     for c in found.collectors:
         lines += ["", c.name + (" (timed)" if c.timed else "")]
         lines += _table([list(_HEADER), *([n, *numbers(x)] for n, x in c.statistics.items())])
-    if not found.collectors:
+    if not found.whole:
+        lines += ["", "no simulation came to its end, so nothing is known of the data collectors"]
+    elif not found.collectors:
         lines += ["", "the net has no data collectors"]
     elif len(found.whole) < 2:
         lines += ["", "nothing is known of confidence: that needs two simulations at least"]

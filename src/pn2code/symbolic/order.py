@@ -23,21 +23,36 @@ _WORK = 20_000_000
 """Nor does it look at more arcs."""
 _WIDE = 200
 """A transition with more places says little about which of them belong together."""
+_NARROW = 8
+"""The same where wide transitions count for little."""
 
 Order = NDArray[np.int64]
 Arcs = Sequence[Mapping[int, int]]
 
 
 def orders(places: int, pre: Arcs, post: Arcs) -> list[list[int]]:
-    """Orders of the places, from the top of the diagram downwards; different ones, the most promising one first."""
+    """Orders of the places, from the top of the diagram downwards; different ones, the most promising one first.
+
+    In some of them wide transitions count for little: one that looks at a place of each process would draw these
+    places away from the others of their processes.
+    """
     if places == 0:
         return [[]]
-    net = _Spans(places, pre, post)
+    even = _sorted(_Spans(places, pre, post))
+    narrow = _sorted(_Spans(places, pre, post, is_narrow=True))
+    found = [*narrow[:1], *even[:1], *narrow[1:2], *even[1:]]
+    different = {order.tobytes(): order for order in reversed(found)}
+    kept = dict.fromkeys(order.tobytes() for order in found)
+    return [different[key].tolist() for key in kept]
+
+
+def _sorted(net: _Spans) -> list[Order]:
+    """The different orders that are made, by their cost."""
     found: dict[bytes, Order] = {}
     for order in _made(net):
         better = order if net.cost(order) <= net.cost(order[::-1]) else order[::-1].copy()
         found.setdefault(better.tobytes(), better)
-    return [order.tolist() for order in sorted(found.values(), key=net.cost)]
+    return sorted(found.values(), key=net.cost)
 
 
 def _made(net: _Spans) -> Iterator[Order]:
@@ -62,24 +77,35 @@ def _breadth_first(near: csr_array) -> Order:
 
 
 class _Spans:
-    """The places of all transitions, one after the other."""
+    """The places of all transitions, one after the other.
 
-    def __init__(self, places: int, pre: Arcs, post: Arcs) -> None:
+    Args:
+        places: how many there are.
+        pre, post: arcs of the transitions.
+        is_narrow: whether transitions count less, the more places they have.
+    """
+
+    def __init__(self, places: int, pre: Arcs, post: Arcs, *, is_narrow: bool = False) -> None:
         self.places = places
         touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
         touched = [t for t in touched if len(t) > 1]
         self.sizes = np.array([len(t) for t in touched], dtype=np.int64)
         self.first = np.concatenate(([0], np.cumsum(self.sizes)))[:-1].astype(np.int64)
         self.place = np.array([p for t in touched for p in t], dtype=np.int64)
-        self.uses = np.bincount(self.place, minlength=places)
+        self.weight = 1.0 / (self.sizes - 1.0) ** 2 if is_narrow else np.ones(len(self.sizes))
+        self.widest = _NARROW if is_narrow else _WIDE
+        self.uses = np.bincount(self.place, np.repeat(self.weight, self.sizes), places)
 
     def neighbours(self) -> csr_array:
         """Which places have a transition in common."""
         of = np.repeat(np.arange(len(self.sizes)), self.sizes)  # arc -> its transition
         first = self.place[self.first[of]]
         behind = np.arange(len(of)) - self.first[of]  # arc -> its number there
-        next_ = np.flatnonzero(behind >= 1)
-        also = np.flatnonzero((behind >= 2) & (self.sizes[of] <= _WIDE))
+        is_near = np.full(len(of), True)
+        if self.widest == _NARROW:
+            is_near = self.sizes[of] <= _NARROW
+        next_ = np.flatnonzero((behind >= 1) & is_near)
+        also = np.flatnonzero((behind >= 2) & (self.sizes[of] <= self.widest))
         a = np.concatenate((self.place[next_ - 1], first[also]))
         b = np.concatenate((self.place[next_], self.place[also]))
         ones = np.ones(2 * len(a), dtype=np.int32)
@@ -93,7 +119,7 @@ class _Spans:
         level = self._levels(order)[self.place]
         top = np.maximum.reduceat(level, self.first)
         low = np.minimum.reduceat(level, self.first)
-        return float(np.sum((top - low) * (top / self.places)))
+        return float(np.sum(self.weight * (top - low) * (top / self.places)))
 
     def forced(self, order: Order) -> Order:
         """An order in which transitions reach over fewer levels."""
@@ -103,8 +129,9 @@ class _Spans:
         for _ in range(min(_PASSES, _WORK // len(self.place))):
             level = self._levels(order)
             centre = np.add.reduceat(level[self.place], self.first) / self.sizes
-            pull = np.bincount(self.place, np.repeat(centre, self.sizes), self.places)
-            wanted = np.where(self.uses > 0, pull / np.maximum(self.uses, 1), level)
+            pull = np.bincount(self.place, np.repeat(centre * self.weight, self.sizes), self.places)
+            uses = np.where(self.uses > 0, self.uses, 1.0)
+            wanted = np.where(self.uses > 0, pull / uses, level)
             order = np.lexsort((level, wanted))[::-1].astype(np.int64)
             cost = self.cost(order)
             idle = 0 if cost < lowest else idle + 1

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from typing import Any
 
 _DEPTH = 2_000
 """Python's JSON reader uses the C stack; the command's own recursion limit is too high for it."""
+
+
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
 
 
 class BadJson(ValueError):  # noqa: N818
@@ -34,6 +38,17 @@ def parse_json(text: str, *, once: bool = False) -> Any:
         raise BadJson("it is nested too deeply") from None
     finally:
         sys.setrecursionlimit(limit)
+
+
+def is_deep(text: str) -> bool:
+    """Whether a text has more brackets outside its strings than any small message, and so may be nested very deeply.
+
+    While something is evaluated in another thread, Python's own limit may be more than the C stack permits.
+    """
+    if text.count("[") + text.count("{") <= _DEPTH:
+        return False
+    plain = _STRING.sub("", text)
+    return plain.count("[") + plain.count("{") > _DEPTH
 
 
 def _object(members: list[tuple[str, Any]]) -> dict[str, Any]:

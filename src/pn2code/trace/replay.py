@@ -53,7 +53,9 @@ from pn2code.trace.lines import (
     time_problem,
     unknown_variable,
 )
+from pn2code.trace.markings import ALL, Markings, claimed_loop
 from pn2code.trace.parties import SIMULATORS, Parties
+from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
 
 DEFAULT_SEED = 1
@@ -196,6 +198,7 @@ def replay(
             is_whole=is_whole,
             limits=limits,
             files=files,
+            loop=claimed_loop(path),
         )
 
 
@@ -214,25 +217,39 @@ def replay_lines(
     limits: Limits | None = None,
     files: Files | None = None,
     watch: Watch | None = None,
+    loop: int | str | None = ALL,
 ) -> ReplayResult:
     """Replays the lines of a trace; see `replay`.
 
     Args:
         watch: sees the game at its start (with no element) and after each step, with the line.
+        loop: which marking the last line will ask for (`claimed_loop`).
     """
     game: Game | None = None
     who = parties or Parties.unknown(net)
     steps, at, ended, transition, source, by = 0, 0, None, "", net.name, ""
     names = {t.name: t for t in net.transitions}
     given: tuple[str, ...] = ()
-    markings: list[Marking] = []
+    markings: Markings | None = None
     latest = 0.0
     by_hand = 0
+    repeated: Repeated | None = None
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
                 continue
             at = number
+            again = repeated.repeat(text) if repeated is not None and ended is None else None
+            if again is not None:
+                assert game is not None and markings is not None
+                line, occurred = again
+                transition = str(line["transition"])
+                if watch is not None:
+                    watch(game, occurred, line)
+                _refuse(order_problem(line, steps + 1, latest))
+                markings.add(game.marking)
+                steps += 1
+                continue
             line = _object(text)
             transition = str(line.get("transition", ""))
             _refuse(form_problem(line, is_first=game is None) if is_whole else None)
@@ -247,28 +264,32 @@ def replay_lines(
                 )
                 given = tuple(_given(game, initial))
                 rules = rules or _rules_for(by, time_unit)
-                if notes is not None:
+                if notes is None:
+                    repeated = Repeated(game, rules.priorities, who)
+                else:
                     notes.begin(game, by)
                 if watch is not None:
                     watch(game, None, line)
-                markings.append(game.marking)
+                markings = Markings(game.marking, loop)
             elif ended is not None and (is_whole or "event" not in line):
                 raise _Wrong("it comes after the end of the run")
             elif line.get("event") == "end":
-                assert rules is not None
+                assert rules is not None and markings is not None
                 ended = str(line.get("why", ""))
-                ending = Ending(by, rules.own_clock, who, tuple(markings), may_fail_outside)
+                ending = Ending(by, rules.own_clock, who, markings, may_fail_outside)
                 _refuse(end_problem(game, line, ending) or time_problem(line, latest))
                 _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
-                assert rules is not None
+                assert rules is not None and markings is not None
                 occurred = _step(game, line, rules, names, who, by, notes)
                 if watch is not None:
                     watch(game, occurred, line)
                 _refuse(order_problem(line, steps + 1, latest))
                 latest = max(latest, _time_of(line))
-                markings.append(game.marking)
+                markings.add(game.marking)
                 steps += 1
+                if repeated is not None:
+                    repeated.learn(text, line, occurred)
             else:
                 by_hand += is_by_hand(line)
                 if notes is not None:
@@ -341,7 +362,10 @@ def _seed(header: dict[str, Any]) -> int:
 
 def _time_of(line: dict[str, Any]) -> float:
     t = line.get("t")
-    return float(t) if is_number(t) else 0.0
+    try:
+        return float(t) if is_number(t) else 0.0
+    except OverflowError:
+        raise _Wrong("its time `t` is too large") from None
 
 
 def _step(

@@ -17,6 +17,7 @@ from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.trace.lines import is_number
+from pn2code.trace.markings import Markings
 from pn2code.trace.parties import RUN, Parties
 
 FINISHED = "finished"
@@ -52,14 +53,14 @@ class Ending:
         by: who wrote the trace.
         is_simulated: a simulator did.
         parties: who runs what.
-        markings: from the first to the last.
+        markings: from the first to the last; at least that to which a lasso goes back, and the last, are there.
         may_fail_outside: something beside the net (a monitor) may have raised the exception.
     """
 
     by: str
     is_simulated: bool
     parties: Parties
-    markings: tuple[Marking, ...]
+    markings: Markings | tuple[Marking, ...]
     may_fail_outside: bool
 
 
@@ -173,12 +174,17 @@ def _not_dead(game: Game) -> str | None:
 
 def _raises(game: Game) -> bool:
     """Whether the search for what is enabled, or an occurrence, raises an exception."""
+    done = game.steps
     try:
         marking = game.advance_time(game.marking)
-        for element in game.enabled_in(marking):
+        enabled = game.enabled_in(marking)
+        game.evaluator.steps = done + 1  # an occurrence counts while it occurs
+        for element in enabled:
             game.occur(marking, element)
     except GameError:
         return True
+    finally:
+        game.steps = done
     return False
 
 
@@ -193,7 +199,11 @@ def _loop_problem(line: Mapping[str, Any], ending: Ending) -> str | None:
     last = len(ending.markings) - 1
     if isinstance(loop, bool) or not isinstance(loop, int) or not 0 <= loop <= last:
         return f"its `loop` is {loop}, but the run has {last} steps"
-    if _relative(ending.markings[loop]) != _relative(ending.markings[last]):
+    try:
+        first = ending.markings[loop]
+    except LookupError:
+        return f"it says that the run repeats from step {loop} on; the file has changed while it was read"
+    if _relative(first) != _relative(ending.markings[last]):
         return (
             f"it says that the run repeats from step {loop} on, but the marking there is different"
         )

@@ -37,6 +37,17 @@ class Asked:
         return bool(self.properties.properties)
 
     @property
+    def of_cell(self) -> Partition:
+        """The cell.
+
+        Raises:
+            ValueError: it is not said; what is found of the net alone must not be said of a cell.
+        """
+        if self.partition is None:
+            raise ValueError("what is said of a cell needs who runs what in it")
+        return self.partition
+
+    @property
     def plain(self) -> m.Properties:
         """Those that are asked of the net itself."""
         plain = (p for p in self.properties.properties if not is_about_bindings(p))

@@ -47,10 +47,15 @@ def look(
         folder: where traces go.
         d: gets the errors.
         asked: the properties.
+
+    Raises:
+        ValueError: a cell without its partition; what is found of the net alone must not be said of it.
     """
     config = opened.config
-    if config is None or partition is None:
+    if config is None:
         return None
+    if partition is None:
+        raise ValueError("what is said of a cell needs who runs what in it")
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)
     bounds = (options.sizes.bounds if options.sizes is not None else None) or {}

@@ -115,9 +115,7 @@ def _bindings_of_cell(
     """Those of a cell as it runs: its net is made of the parts of the transitions."""
     if control is None:
         return closed
-    partition = asked.partition
-    if partition is None:
-        return closed
+    partition = asked.of_cell
     running = control.running
     said: Sequence[Mapping[str, Any]] = ()
     seen = control.found
@@ -228,13 +226,13 @@ def answered(
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if nondeterminism.counts(opened.flat):
         plain, more = tuple(map(counted, plain)), tuple(map(counted, more))
-    if control is not None and asked.partition is not None:
+    if control is not None:
         plain = tuple(
             of_cell(
                 asked.plain,
                 control.answers,
                 control,
-                asked.partition,
+                asked.of_cell,
                 plain,
                 storage=opened.storage,
             )

@@ -82,7 +82,7 @@ def test_the_nets_of_the_contest(shared: Path, tmp_path: Path) -> None:
         pytest.skip(f"no inputs of the Model Checking Contest at {folder}")
     for name in ("Philosophers-PT-000005", "ShieldRVs-PT-001A", "HypertorusGrid-PT-d2k1p8b00"):
         with tarfile.open(folder / f"{name}.tgz") as archive:
-            archive.extractall(tmp_path, filter="data")
+            archive.extract(f"{name}/model.pnml", tmp_path)
         path = tmp_path / name / "model.pnml"
         tables = tables_of(path)
         assert tables is not None and tables == _tables(load(path), Diagnostics())

@@ -132,6 +132,25 @@ def test_what_is_as_high_as_is_permitted_is_not_known(gap: float, known: bool) -
     assert bool(fault) is (known and gap > 0.005)
 
 
+@pytest.mark.parametrize(("off", "known"), [(0.00497, True), (0.005, False), (0.00503, True)])
+def test_what_is_as_far_off_as_can_be_gripped_is_not_known(off: float, known: bool) -> None:
+    fault, doubt = as_proved(cell_of((0.9, -1.4, 0.075)), [over(0.9 + off, -1.4, 0.15), TAKE])
+    assert bool(doubt) is not known
+    assert bool(fault) is (known and off > 0.005)
+
+
+def test_which_of_two_parts_is_taken_that_are_as_near_is_not_known() -> None:
+    """Which one a run takes depends on the order in which they have come."""
+    data = tomllib.loads(TOML)
+    data["parts"]["box"] |= {"size": [0.008, 0.2, 0.15], "grip_tolerance": 0.01}
+    for x, known in ((1.0045, False), (1.004, True)):
+        data["parts"]["box"]["at"] = [{"x": at, "y": -1.4, "z": 0.075} for at in (1.0, 1.009)]
+        cell = load(data, Path(), lambda *_: Origin("cell.toml"), Diagnostics())
+        assert cell is not None
+        fault, doubt = as_proved(cell, [over(x, -1.4, 0.15), TAKE])
+        assert not fault and bool(doubt) is not known, x
+
+
 def contents_of(doing: Doing, planner: Planner, *commands: Command) -> tuple[Contents, int]:
     stand = planner.home("robot")
     found = doing.of("robot", commands, stand, doing.start, (stand,))

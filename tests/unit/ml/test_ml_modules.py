@@ -176,7 +176,7 @@ def test_an_exception_not_handled_goes_on_past_references() -> None:
         ("fun f (x : 'a) = x = x", ["not-an-equality-type | values of the type variable `'a` are compared with `=`"]),
         ("exception E of 'a list", ["unknown-colour-set | exception `E` carries a type variable"]),
         ("val (1 | 2) = 3", ["unsupported-ml | alternatives `(p | q)` are supported in the rules of functions and `case` only"]),
-        ("fun f (1 | x) = x", ["unbound-identifier | `x` is not declared"]),
+        ("fun f (1 | x) = x", ["unbound-identifier | `x` is not declared", "unbound-identifier | `x` is bound in some alternatives of this pattern only"]),
     ],
 )  # fmt: skip
 def test_errors(declarations: str, expected: list[str]) -> None:

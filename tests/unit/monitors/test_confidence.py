@@ -6,6 +6,9 @@ The recorded answers are from two replication reports (7 and 35 simulations) of 
 from __future__ import annotations
 
 import json
+import math
+import statistics
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -37,3 +40,36 @@ def test_critical_points_of_the_engine() -> None:
 def test_one_observation_says_nothing_of_confidence() -> None:
     assert Average.of([3]).half_lengths is None
     assert Average.of([3]).row()["half_95"] is None
+
+
+@pytest.mark.parametrize(
+    "observations",
+    [
+        [1e9 + 0.1, 1e9 + 0.2, 1e9 + 0.3],
+        [123456789012, 123456789013, 123456789015],
+        [2**70, 2**70 + 4],
+        [0.1, 0.1, 0.1],
+        [1e200, 2e200],
+        [1e-200, 3e-200],
+        [-7, 0, 7.5],
+    ],
+    ids=str,
+)
+def test_large_observations_that_differ_a_little_are_not_the_same(
+    observations: list[float],
+) -> None:
+    found = Average.of(observations)
+    std = statistics.stdev(map(Fraction, observations))
+    assert found.average == pytest.approx(float(statistics.mean(observations)), rel=1e-12)
+    assert found.std == pytest.approx(float(std), rel=1e-9, abs=0.0)
+    assert found.half_lengths is not None
+    half = critical_point(95, len(observations) - 1) * float(std) / math.sqrt(len(observations))
+    assert found.half_lengths[95] == pytest.approx(half, rel=1e-9, abs=0.0)
+
+
+def test_of_what_is_no_number_or_beyond_all_nothing_is_said() -> None:
+    found = Average.of([math.inf, 1.0])
+    assert (found.std, found.half_lengths, found.average) == (None, None, math.inf)
+    assert Average.of([math.nan, 1.0]).row()["half_95"] is None
+    assert Average.of([10**400, 10**400]).average == math.inf
+    assert Average.of([10**400, 10**400]).std == 0.0

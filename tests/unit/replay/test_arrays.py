@@ -40,3 +40,16 @@ def test_a_damaged_array_is_refused(damage: dict[str, object]) -> None:
 
 def test_the_same_text_gives_the_same_bytes() -> None:
     assert packed_text("Łódź\n" * 100) == packed_text("Łódź\n" * 100)
+
+
+def test_a_few_bytes_do_not_become_gigabytes() -> None:
+    """What is unpacked is no longer than it says, and what says too much is not unpacked."""
+    bomb = packed(np.zeros(4_000_000, np.int64))
+    assert len(bomb["deflate"]) < 6_000
+    with pytest.raises(NotPacked, match="4 numbers or more, but says 3"):
+        unpacked({**bomb, "length": 3})
+    with pytest.raises(NotPacked, match="says that it has 1000000000000 numbers"):
+        unpacked({**bomb, "length": 10**12})
+    half = bomb["deflate"][: len(bomb["deflate"]) // 8 * 4]
+    with pytest.raises(NotPacked, match="cut off"):
+        unpacked({**bomb, "deflate": half})

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from helpers.shown import described, with_arm
+from helpers import netbuilder
+from helpers.shown import PAIR, described, opened, recorded, with_arm
+from pn2code.replay import trace as traces
 from pn2code.replay.differences import differences, sentences
 
 
@@ -18,7 +21,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def test_a_slower_run_is_no_other_run(run: dict[str, Any]) -> None:
     found = differences(with_arm(run), with_arm(run, tempo=1.7))
-    assert found == {"step": None, "message": None, "pose": None}
+    assert {found[kind] for kind in ("step", "message", "pose", "end")} == {None}
     assert sentences(found) == ["both runs have the same steps, messages and poses"]
 
 
@@ -61,3 +64,116 @@ def test_after_another_step_poses_are_not_compared(run: dict[str, Any], tmp_path
     found = differences(with_arm(run), with_arm(longer))
     assert found["step"]["step"] == 13 and found["step"]["alike"] == 12
     assert found["pose"] is None
+
+
+@pytest.fixture
+def many(tmp_path: Path) -> Path:
+    """Twelve steps of a net, as a trace beside the net."""
+    return recorded(netbuilder.write(PAIR, tmp_path / "net.cpn"), tmp_path / "a.trace.jsonl", 12)
+
+
+def shown(trace: Path, most: int = 1000) -> dict[str, Any]:
+    return traces.describe(trace, *opened(trace.with_name("net.cpn")), {}, most=most)
+
+
+def changed(trace: Path, old: str, new: str) -> Path:
+    text = trace.read_text()
+    assert old in text
+    other = trace.with_name("b.trace.jsonl")
+    other.write_text(text.replace(old, new, 1))
+    return other
+
+
+def test_of_traces_nothing_is_said_of_messages_and_poses(many: Path) -> None:
+    found = differences(shown(many), shown(many))
+    assert found["compared"] == ["step", "end"]
+    assert sentences(found) == ["both runs have the same steps"]
+
+
+def test_a_step_that_is_not_possible_is_no_end(many: Path) -> None:
+    lines = many.read_text().splitlines()
+    impossible = many.with_name("b.trace.jsonl")
+    last = json.loads(lines[12])
+    last["binding"]["n"] = 17
+    impossible.write_text("\n".join([*lines[:12], json.dumps(last)]))
+    cut_there = many.with_name("c.trace.jsonl")
+    cut_there.write_text("\n".join(lines[:12]))
+    a, b = shown(cut_there), shown(impossible)
+    assert a["course"]["steps"] == b["course"]["steps"] == 11
+    step = differences(a, b)["step"]
+    assert step is not None and step["step"] == 12
+    assert step["what"][0] == "the run has ended"
+    assert "the next step is not possible: Top." in step["what"][1]
+    assert "lacks 1`17" in step["what"][1]
+    assert differences(b, b)["step"] is None
+
+
+def test_of_a_run_with_less_steps_shown_the_rest_is_not_compared(many: Path) -> None:
+    whole, part = shown(many), shown(many, most=5)
+    found = differences(whole, part)
+    assert found["step"] is None and found["end"] is None
+    assert sentences(found) == [
+        "both runs have the same steps",
+        "steps of the second run after the first 5 are left out, and not compared",
+    ]
+    assert differences(part, shown(many, most=3))["step"] is None
+    fewer = many.with_name("b.trace.jsonl")
+    fewer.write_text(
+        "\n".join(many.read_text().splitlines()[:5])
+    )  # it ends before the other is cut
+    assert differences(shown(fewer), part)["step"]["step"] == 5
+
+
+def test_a_trace_that_says_it_is_cut_is_not(many: Path) -> None:
+    lines = many.read_text().splitlines()
+    fewer = many.with_name("b.trace.jsonl")
+    head = lines[0].replace('"by": "reference"', '"by": "supervisor"')
+    fewer.write_text("\n".join([head, *lines[1:5], lines[-1].replace('"steps"', '"cut"')]))
+    other = shown(fewer)
+    assert other["course"]["refused"] is None
+    found = differences(shown(many), other)
+    assert found["step"]["step"] == 5 and found["step"]["what"][1] == "the run has ended"
+    assert found["end"] is not None and not found["notes"]
+
+
+def test_another_end_is_said(many: Path) -> None:
+    found = differences(shown(many), shown(changed(many, '"why": "steps"', '"why": "interrupted"')))
+    assert found["step"] is None
+    assert sentences(found) == ["other end: steps; in the second run interrupted"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "is_rounded"),
+    [
+        ("REAL", ("0.1 + 0.2", "0.3"), True),
+        ("REAL", ("0.25", "0.25"), False),
+        ("STRING", tuple(f'implode (List.tabulate (4001, fn i => chr (65 + i div {n})))' for n in (4000, 5000)), True),
+    ],
+)  # fmt: skip
+def test_what_is_shown_shortened_is_compared_shortened(
+    kind: str, values: tuple[str, str], is_rounded: bool, tmp_path: Path
+) -> None:
+    runs = []
+    for name, value in zip("ab", values, strict=True):
+        text = f"""
+        net One
+          standard
+          var x : {kind};
+          page Top
+            place A : {kind} = 1`({value})
+            trans T
+              in A : x
+        """
+        (tmp_path / name).mkdir()
+        runs.append(described(tmp_path / name, text))
+    said = sentences(differences(*runs))
+    assert said[0] == "both runs have the same steps"
+    assert [line.startswith("values are compared as") for line in said[1:]] == [True] * is_rounded
+
+
+def test_what_runs_say_is_no_command_for_the_terminal(many: Path) -> None:
+    odd = shown(many)
+    odd["verdict"]["reason"] = "\x1b[2J\u202ex" + "y" * 10_000_000
+    (said,) = sentences(differences(shown(many), odd))
+    assert said.isprintable() and len(said) < 10_000
+    assert "in the second run steps: \ufffd[2J\ufffdxyyy" in said and "more characters" in said

@@ -262,6 +262,41 @@ def test_a_belt_takes_nothing_along_that_has_left_it(way: float) -> None:
     assert doing.of("feeder", (run(0.7),), home, doing.start, (home,)).doubt
 
 
+def test_a_belt_takes_nothing_onto_another_one_that_runs() -> None:
+    cell = two_belts(0.6)
+    parts = Parts(cell)
+    parts.stand("feeder", np.array([0.69, 0.0]))
+    parts.turning = frozenset({"feeder/away"})
+    with pytest.raises(
+        PartFault, match="`feeder/belt` takes `box.1` along on `feeder/away` while that runs"
+    ):
+        parts.run_out({"feeder/belt"})
+
+
+@pytest.mark.parametrize("runs", ["belt", "away"])
+def test_nothing_is_put_half_on_a_belt_that_runs(runs: str) -> None:
+    """Whichever of the two it would go with."""
+    parts = Parts(two_belts(0.6))
+    over = [matrix_of(pose_mm(1500, y, 650, 180, 0, 0)) for y in (-1100, -395)]
+    parts.handle("robot", Handling("takes", "box"), over[0])
+    parts.turning = frozenset({f"feeder/{runs}"})
+    with pytest.raises(PartFault, match=f"releases `box.1` on `feeder/{runs}` while that runs"):
+        parts.handle("robot", Handling("releases", "box"), over[1])
+    assert parts.held_by("robot") is not None
+
+
+@pytest.mark.parametrize(("at", "known"), [(1.10497, True), (1.105, False), (1.10503, True)])
+def test_whether_what_is_beyond_the_stop_stops_the_belt_is_known_unless_it_is_just_there(
+    at: float, known: bool
+) -> None:
+    cell = right((at,))
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    found = doing.of("feeder", (run(0.1),), home, doing.start, (home,))
+    assert not found.fault and bool(found.doubt) is not known
+    assert known is False or bool(found.turns) is (at > 1.105)
+
+
 # --- lines of belts ------------------------------------------------------------------------------
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,9 @@ from helpers.robot_cells import nowhere
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.legs import Planner
-from pn2code.robot.clamps import closes, closing, nearest, on_nothing
-from pn2code.robot.commands import Along, MoveExternal
+from pn2code.robot.clamps import closed_on, closes, closing, nearest, on_nothing, shut
+from pn2code.robot.commands import Along, MoveExternal, MoveJoint, Pose
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
@@ -74,6 +76,25 @@ def test_what_it_closes_on_is_as_near_as_can_be_gripped() -> None:
         "`mill/vice` closes on nothing: no part is at `inVice`; the nearest, `blank.1`, is 5.1 mm away"
     )
     assert on_nothing(held, nearest(cell, held, [])).endswith("no part is at `inVice`")
+
+
+def test_it_does_not_close_on_what_is_on_the_way() -> None:
+    """One that may be empty lets nothing out; what comes meanwhile is for its jaws."""
+    for may, said in (("", [True, True, False]), ("\nmay_be_empty = true", [False, True, False])):
+        cell = cell_of(may)
+        (held,) = shut(cell.robot("mill"), np.array([0.0, 0.06, 0.06]), np.array([0.0, 0.03, 0.03]))
+        frame = matrix_of(Pose(0.0, 0.0, 0.075, math.pi, 0.0, 0.0))
+        blank = Part("blank.1", cell.parts["blank"], frame, "arm")
+        q = {}
+        for x in (1.1, 1.003, 1.0):
+            executor = RobotExecutor(cell.robot("arm"), cell.motion)
+            executor.begin(MoveJoint(Pose(x, 0.0, 0.75, math.pi, 0.0, 0.0)), 0.0)
+            executor.finish()
+            q[x] = executor.q
+        for (begun, now), is_said in zip(((1.1, 1.0), (1.0, 1.003), (1.0, 1.1)), said, strict=True):
+            way = q[begun], q[now]
+            found = closed_on(cell, held, cell.robot("arm"), way, ((blank,), ()))
+            assert bool(found) is is_said, (may, begun, now)
 
 
 def test_over_all_states_it_closes_on_a_part() -> None:

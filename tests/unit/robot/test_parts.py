@@ -93,6 +93,14 @@ def test_what_cannot_be(
     assert parts.present == kept
 
 
+def test_of_several_parts_at_a_place_the_nearest_is_removed() -> None:
+    at = [{"x": 1.5, "y": -0.6, "z": z} for z in (0.725, 0.575)]
+    cell, d = read(lambda data: data["parts"]["box"].update(at=at, grip_tolerance=0.2))
+    assert cell is not None, list(d)
+    with pytest.raises(PartFault, match=r"removes `box.2` .* but `box.1` stands on it"):
+        Parts(cell).handle("feeder", CLEAR, None)
+
+
 def test_parts_of_the_start() -> None:
     cell, d = read(lambda data: data["parts"]["box"].update(at=[{"x": 1.0}, {"x": 2.0, "yaw": 90}]))
     assert cell is not None, list(d)

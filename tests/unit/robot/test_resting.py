@@ -93,6 +93,12 @@ def test_parts_of_the_start_stand_on_each_other() -> None:
     [
         (1.0, 0.3, ""),
         (1.0, 0.3049, ""),
+        (1.0, 0.3050000001, ""),
+        (
+            1.0,
+            0.30502,
+            "in the air: `box.1`, the nearest thing below it, is 5.02 mm away (at most 5 mm)",
+        ),
         (1.0, 0.306, "in the air: `box.1`, the nearest thing below it, is 6.0 mm away"),
         (1.099, 0.3, ""),
         (1.101, 0.3, "where it tips over: its middle is not above what it stands on, `box.1`, by"),

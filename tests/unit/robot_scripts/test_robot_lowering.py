@@ -668,6 +668,11 @@ REFUSED = {
         ("x in INT", "y out INT"),
         "error[unsupported-robot-expression] `fac` is recursive, which robot scripts cannot do",
     ),
+    "a case that no rule covers": (
+        "place A = 1\ntrans T\n  both A\n  in x : n\n  out y : part (n, n > 2)",
+        ("x in INT", "y out INT"),
+        "error[unsupported-robot-expression] no rule covers `(0, false)`, which a robot script cannot handle",
+    ),
     "command in a guard": (
         "place A = 1\ntrans T guard [moveHome () = ()]\n  both A",
         (),
@@ -689,7 +694,38 @@ colset TUNIT = unit timed;
 colset INTS = list INT;
 var l : INTS;
 fun fac 0 = 1 | fac n = n * fac (n - 1);
+fun part (n, true) = n | part (1, false) = 2;
 """
+
+
+COVERED = {
+    "truth values": ("fun f (n, true) = n | f (n, false) = n + 10;", "f (n, n > 2)"),
+    "two at once": (
+        "fun f (true, true) = 1 | f (false, _) = 2 | f (_, false) = 3;",
+        "f (n > 0, n > 2)",
+    ),
+    "an enumeration": (
+        "colset C = with red | blue; fun f {c = red, n} = n | f {c = blue, n} = n + 10;",
+        "f {n = n, c = if n > 2 then red else blue}",
+    ),
+    "one that is never reached": (
+        "fun f (true, n) = n | f (false, n) = n + 10 | f (true, 7) = 8;",
+        "f (n > 2, n)",
+    ),
+    "what is known to differ": (
+        "fun f (true, true) = 1 | f (false, true) = 2 | f (_, false) = 3;",
+        "f (n > 2, true)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COVERED)
+def test_rules_that_cover_all_cases_together(tmp_path: Path, name: str) -> None:
+    extra, call = COVERED[name]
+    robot = f"place A = 1\ntrans T\n  both A\n  in x : n\n  out y : {call}"
+    cell = Cell(tmp_path, robot, ("x in INT", "y out INT"), extra=extra)
+    assert [m for m in cell.messages if m.startswith("error")] == []
+    assert replayed(cell, [("x", (n,)) for n in (3, 1, 0, -2)]).ok
 
 
 @pytest.mark.parametrize("name", REFUSED)

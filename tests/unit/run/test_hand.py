@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 from helpers.scripts import MemoryFiles, checked
+from pn2code.cell.config import SensorConfig
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import ChannelSpec, SharedDirectory
+from pn2code.diagnostics import NOWHERE
 from pn2code.robot.commands import Pose, Wait
 from pn2code.robot.executor import Motion
 from pn2code.robot.motion import Still
@@ -339,3 +341,18 @@ def test_what_is_made_to_fail(asking: Sense | None, says: str) -> None:
     with pytest.raises(CellStoppedError, match=re.escape(says)):
         RealtimeEngine.fail(engine, "robot1")  # type: ignore[arg-type]
     assert noted == [says.split(": ")[2].replace(" fails", " was made to fail")]
+
+
+@pytest.mark.parametrize(
+    ("sensor", "tells"),
+    [
+        ({}, ""),
+        ({"sees": "infeed"}, "whether something is at infeed"),
+        ({"sees": "infeed", "part": "box"}, "whether a box is at infeed"),
+        ({"sees": "mill.door", "at": 0.9}, "whether mill.door is at 0.9"),
+        ({"sees": "infeed", "says": "what the eye finds"}, "what the eye finds"),
+    ],
+)
+def test_a_sensor_that_sees_says_what(sensor: dict[str, Any], tells: str) -> None:
+    config = SensorConfig("eye", "there", "", None, 1, NOWHERE, **sensor)
+    assert config.tells == tells

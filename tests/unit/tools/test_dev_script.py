@@ -22,6 +22,7 @@ case $1-$2 in
 -c-*"(3, 12)"*) [ $version -ge 12 ] ;;
 -c-*pybullet*) [ $version = 11 ] ;;
 -c-*Python.h*) exit 0 ;;
+-c-"import ensurepip") exit 0 ;;
 -m-venv)
     echo "venv by $version" >>"{log}"
     mkdir -p "$3/bin"
@@ -62,10 +63,10 @@ class Machine:
         """Python 3.VERSION, for which PyBullet can be compiled or not."""
         self.add("python3", PYTHON.format(version=version, log=self.log, compiled=1 - compiles))
 
-    def dev(self, *words: str) -> subprocess.CompletedProcess[str]:
-        """Calls the script."""
+    def dev(self, *words: str, own: str = "") -> subprocess.CompletedProcess[str]:
+        """Calls the script, where the distribution's own Python is that one."""
         return subprocess.run(
-            [self.project / "dev", *words], env={"PATH": str(self.programs)},
+            [self.project / "dev", *words], env={"PATH": str(self.programs), "PN2CODE_PYTHON": own},
             capture_output=True, text=True, check=False, timeout=600,
         )  # fmt: skip
 
@@ -86,6 +87,20 @@ def test_python_3_11_is_taken_and_nothing_is_compiled(machine: Machine) -> None:
     assert "venv by 11" in machine.calls()
     assert "uv" not in machine.calls() and "[cell]" not in machine.calls()
     assert "examples/riveting --no-pictures" in machine.calls()
+
+
+@pytest.mark.parametrize("pip", ["import ensurepip", "nothing"])
+def test_the_distributions_own_is_taken_first_where_it_makes_environments(
+    machine: Machine, tmp_path: Path, pip: str
+) -> None:
+    """It is compiled for speed."""
+    machine.has_python(11)
+    own = (machine.programs / "python3").read_text().replace("import ensurepip", pip)
+    path = tmp_path / "python3.11"
+    path.write_text(own.replace("venv by", "venv by the distribution's"))
+    path.chmod(0o755)
+    assert machine.dev("setup", own=str(path)).returncode == 0
+    assert ("the distribution's" in machine.calls()) == (pip != "nothing")
 
 
 @pytest.mark.parametrize("version", [12, 13, 14])

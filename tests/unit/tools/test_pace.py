@@ -156,3 +156,27 @@ def test_a_whole_run_that_costs_too_much_fails(
     assert done.returncode == code, done.stdout + done.stderr
     assert ("times the processor time" in done.stdout) == (code == 1)
     assert "1 passed" in done.stdout
+
+
+def test_each_worker_begins_with_other_files(tmp_path: Path) -> None:
+    """So that each is compiled by one of them; all are imported once, and what is wrong with one is said."""
+    (tmp_path / "conftest.py").write_text("pytest_plugins = ('pace.plugin',)\n")
+    for name in "abcd":
+        (tmp_path / f"test_{name}.py").write_text(
+            "import os\n"
+            "with open(os.environ['PYTEST_XDIST_WORKER'], 'a') as order:\n"
+            f"    order.write('{name}')\n"
+            "def test_well(): pass\n"
+        )
+    (tmp_path / "test_e.py").write_text(
+        "import pytest\npytest.skip('not here', allow_module_level=True)\n"
+    )
+    (tmp_path / "test_f.py").write_text("raise KeyError('wrong')\n")
+    tests = str(Path(__file__).parents[2])
+    path = tests + os.pathsep + os.environ.get("PYTHONPATH", "")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-n", "2", "--continue-on-collection-errors"], cwd=tmp_path,
+        capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+    assert "KeyError: 'wrong'" in done.stdout and "4 passed, 1 skipped" in done.stdout, done.stdout
+    assert [(tmp_path / f"gw{n}").read_text() for n in (0, 1)] == ["acbd", "bdac"]

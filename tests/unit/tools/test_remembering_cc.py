@@ -11,10 +11,12 @@ from pathlib import Path
 import pytest
 
 from helpers import remembering_cc
+from pn2code.emission.c_flags import STANDARD
+from pn2code.verify.exploring.programs import HOST
 
 pytestmark = pytest.mark.cc
 
-FLAGS = ("-std=c11", "-O1", "-Iinclude", "-I.")
+FLAGS = (STANDARD, "-O1", "-Iinclude", "-I.")
 
 
 class Bench:
@@ -141,9 +143,7 @@ def test_errors_are_said_each_time(bench: Bench) -> None:
     assert bench.run("-c", "nothing.c").returncode == 1
 
 
-@pytest.mark.parametrize(
-    "more", ["-MD", "--coverage", "-fstack-usage", "-save-temps", "-march=native"]
-)
+@pytest.mark.parametrize("more", ["-MD", "--coverage", "-fstack-usage", "-save-temps", *HOST.own])
 def test_what_is_not_plain_the_compiler_does(bench: Bench, more: str) -> None:
     for _ in range(2):
         bench.compiled(more)

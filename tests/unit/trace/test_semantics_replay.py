@@ -16,7 +16,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.trace.parties import Parties
 from pn2code.trace.replay import ReplayResult, Rules, replay, replay_lines
-from pn2code.trace.token_game import trace
+from pn2code.trace.token_game import header, occurrence, trace
 
 NET = """
     net Cell
@@ -405,3 +405,26 @@ def test_the_end_has_the_time_of_the_clock(timed: FlatNet) -> None:
     written = lines(timed)
     later = changed(written[-1], t=json.loads(written[-1])["t"] + 1)
     assert "but the clock shows" in refused(timed, [*written[:-1], later]).why
+
+
+def test_an_exception_of_the_next_step_is_that_of_its_number() -> None:
+    net = flat("""
+    net Third
+      standard
+      page Top
+        place A = 9
+        place B : INT
+        trans Plain
+          in A : ()
+        trans Third
+          in A : ()
+          out B : if step () = IntInf.fromInt 3 then 1 div 0 else 1
+    """)
+    game = Game(net)
+    head = json.dumps(header(game))
+    plain = [json.dumps(occurrence(game, game.fire(game.enabled()[0]))) for _ in range(3)]
+    end = json.dumps({"t": 0, "event": "end", "why": "error"})
+    assert replay_lines([head, *plain[:2], end], net).ok
+    for steps in (1, 3):
+        result = refused(net, [head, *plain[:steps], end])
+        assert result.why == "it says that an inscription raises an exception, but none does"

@@ -148,3 +148,18 @@ def test_only_the_supervisor_is_owed_an_answer(toml: str, late: str, tmp_path: P
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None, [x.message for x in d.errors]
     assert Replies.of(partition, opened.config).late == late
+
+
+def test_a_round_without_a_message_is_named(tmp_path: Path) -> None:
+    """A longer `reply_timeout_s` would not help."""
+    again = "    trans Again code action drill ()\n      both Over : ()\n" + REPORT
+    folder = tmp_path / "cell"
+    net = NET.replace(REPORT, again)
+    d = Diagnostics()
+    opened = read(write(folder, net), {}, d)
+    assert opened is not None and opened.config is not None
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    late = Replies.of(partition, opened.config).late
+    assert "`Again` occurs again and again without a message" in late
+    assert "draw each round with places of its own" in late

@@ -116,6 +116,15 @@ class Game:
 
     # --- the current marking ---------------------------------------------------------------------
 
+    @property
+    def steps(self) -> int:
+        """How many occurrences there were; inscriptions see it, and which numbers they draw depends on it."""
+        return self._steps
+
+    @steps.setter
+    def steps(self, count: int) -> None:
+        self._steps = self.evaluator.steps = count
+
     def enabled(self) -> list[BindingElement]:
         """What is enabled at the current time, priorities respected, in the documented order."""
         return self.enabled_in(self.marking)
@@ -135,7 +144,11 @@ class Game:
         if why is not None:
             raise NotEnabled(f"{element_text(self.colours, self.net, element)}: {why}")
         self.evaluator.steps = self.steps + 1
-        self.marking, occurred = self.occur(self.marking, element)
+        try:
+            self.marking, occurred = self.occur(self.marking, element)
+        except GameError:
+            self.evaluator.steps = self.steps
+            raise
         self.steps += 1
         return occurred
 

@@ -280,7 +280,10 @@ _OPEN_HINT = (
     "`pn2code verify` on the cell has no limits of its own; the generated files say `unchecked`"
 )
 _OPEN_HINTS = {
-    "late": "make `reply_timeout_s` longer; what is never answered is `data`, not a flag (docs/protocol.md, I8)",
+    "late": (
+        "let the answer come in time, or make `reply_timeout_s` longer; what is never answered is `data`, "
+        "not a flag (docs/protocol.md, I8)"
+    ),
     "speeds": "`pn2code verify` writes the run; the generated files say `unchecked`",
 }
 

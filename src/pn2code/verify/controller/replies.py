@@ -12,6 +12,7 @@ replies.premise   # what a "yes" rests on otherwise
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 
 from pn2code.base.frozen import frozen, record
@@ -39,11 +40,13 @@ class Time:
         seconds: known ones.
         is_open: moves or measurements take further ones.
         computed: a wait or a delay that takes further ones, which nobody knows; "": there is none.
+        round: transitions that may occur one after the other again and again, if the seconds are without bound.
     """
 
     seconds: float = 0.0
     is_open: bool = False
     computed: str = ""
+    round: tuple[str, ...] = ()
 
     def __add__(self, other: Time) -> Time:
         """One after the other."""
@@ -100,9 +103,10 @@ class Replies:
                 none = unanswered(program)
                 if none:
                     return Replies(f"{who} may give no answer: {none}")
-                needs = "any time" if time.seconds == _ENDLESS else f"{time.seconds:g} s"
+                if time.seconds == _ENDLESS:
+                    return Replies(_endless(who, time.round, limit))
                 return Replies(
-                    f"{who} may need {needs} for an answer, by its tools, waits and delays alone, and "
+                    f"{who} may need {time.seconds:g} s for an answer, by its tools, waits and delays alone, and "
                     f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell "
                     f"(make it longer, or {ADVICE})"
                 )
@@ -127,6 +131,41 @@ class Replies:
         )
 
 
+_Quiet = tuple[int, int, Time, str]
+"""A step without a message: from which place to which, what it takes, and its transition."""
+
+
+def _endless(who: str, around: Sequence[str], limit: float) -> str:
+    """Why there is no bound, and what helps; a longer limit does not."""
+    names = ", ".join(f"`{name}`" for name in around)
+    again = "occurs" if len(around) == 1 else "occur"
+    return (
+        f"{who} may need any time for an answer: for all that its places say, {names} {again} again and again "
+        f"without a message; guards and values, which may end that, are not looked at here. Whoever owes an answer for "
+        f"`reply_timeout_s`, {limit:g} s, stops the cell (draw each round with places of its own, send a "
+        f"message in each round, or {ADVICE})"
+    )
+
+
+def _round(quiet: Sequence[_Quiet]) -> tuple[str, ...]:
+    """The transitions of a shortest round that takes time."""
+    found: list[tuple[str, ...]] = []
+    for here, there, time, name in quiet:
+        if time.seconds <= 0:
+            continue
+        ways: dict[int, tuple[str, ...]] = {there: (name,)}
+        todo = deque([there])
+        while todo and here not in ways:
+            at = todo.popleft()
+            for begin, end, _, step in quiet:
+                if begin == at and end not in ways:
+                    ways[end] = (*ways[at], step)
+                    todo.append(end)
+        if here in ways:
+            found.append(ways[here])
+    return min(found, key=len, default=())
+
+
 @record
 class _Silence:
     """How long a program may go on without a message to the supervisor."""
@@ -139,7 +178,7 @@ class _Silence:
         """From the start, or from one message on, until the next one; unbounded if it may go round meanwhile."""
         net, channels = self.program.net, self.program.channels
         spent = _Commands(net.program, self.config, self.durations)
-        quiet: list[tuple[int, int, Time]] = []
+        quiet: list[_Quiet] = []
         begins: dict[int, Time] = {self.program.start: Time()}
         last: list[tuple[int, Time]] = []
         for step in self.program.steps:
@@ -155,11 +194,11 @@ class _Silence:
                     last.append((here, acts))  # commands, then the message, then the delay
                     begins[there] = Time.longest((begins.get(there, Time()), after))
                 else:
-                    quiet.append((here, there, acts + after))
+                    quiet.append((here, there, acts + after, t.short))
         at = dict(begins)
         for turn in range(len(self.program.control) + 1):
             changed = False
-            for here, there, time in quiet:
+            for here, there, time, _ in quiet:
                 if here in at:
                     reached = Time.longest((at.get(there, Time()), at[here] + time))
                     changed = changed or reached != at.get(there)
@@ -167,7 +206,7 @@ class _Silence:
             if not changed:
                 break
             if turn == len(self.program.control):
-                return Time(_ENDLESS, True)
+                return Time(_ENDLESS, True, round=_round([q for q in quiet if q[0] in at]))
         return Time.longest([*at.values(), *(at[p] + acts for p, acts in last if p in at)])
 
     def _delay(self, e: core.Exp, transition: str) -> Time:

@@ -15,7 +15,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.report import html
 from pn2code.verify.report.graph import Node, StateGraph
 from pn2code.verify.report.graph_layout import lay_out
-from pn2code.verify.report.graph_svg import Links, facts, figure, legend, sample
+from pn2code.verify.report.graph_svg import Links, facts, figure, is_large, legend, sample
 
 _WINDOW = 1300.0
 """Pixels: a wider picture is shown as a whole first."""
@@ -70,6 +70,8 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
             for n in graph.nodes
         ],
         arcs=graph.arcs,
+        is_large=is_large(graph),
+        canvas=html.script("graph_canvas.js"),
         script=html.script("graph.js"),
     )
 

@@ -29,6 +29,10 @@ _ENTRY = 20.0
 _TIP_LINES, _TIP_WIDTH = 40, 200
 
 
+LARGE = 2_500
+"""Nodes and arcs."""
+
+
 @frozen
 class Links:
     """Where a click leads to, and how a node is reached: addresses by number of the node, or position of the arc.
@@ -136,6 +140,18 @@ def all_home(graph: StateGraph) -> bool:
     return len(graph.home) == len(graph.nodes)
 
 
+def is_large(graph: StateGraph) -> bool:
+    """Whether a page draws it on a canvas, where scripts are permitted."""
+    return len(graph.nodes) + len(graph.arcs) > LARGE
+
+
+def _reach(drawn: str, graph: StateGraph) -> str:
+    """A line is hard to point at: a wide one that is not seen helps. Very many would only make the file larger."""
+    if is_large(graph):
+        return ""
+    return f'<path d="{drawn}" fill="none" stroke="#ffffff" stroke-opacity="0" stroke-width="8"/>'
+
+
 def _edge(edge: Drawn, graph: StateGraph, on_path: bool, links: Links) -> tuple[str, Box]:
     ink = PATH if on_path else BACK if edge.goes_back else SOFT
     thick = 2.2 if on_path else 1.0
@@ -143,8 +159,7 @@ def _edge(edge: Drawn, graph: StateGraph, on_path: bool, links: Links) -> tuple[
     rows = [
         _tip(edge, graph),
         f'<path d="{drawn}" fill="none" stroke="{ink}" stroke-width="{_n(thick)}"/>',
-        # A line is hard to point at: a wide one that is not seen helps.
-        f'<path d="{drawn}" fill="none" stroke="#ffffff" stroke-opacity="0" stroke-width="8"/>',
+        _reach(drawn, graph),
         _head(tip, direction, ink) if edge.source != edge.target else _side_head(tip, ink),
     ]
     group = f'<g class="arc{" way" if on_path else ""}">{"".join(rows)}</g>'

@@ -1,0 +1,66 @@
+"""What a page is to be told and has not read yet.
+
+letters = Letters(asyncio.get_running_loop())
+letters.put({"id": 3, "ok": True})      # from any thread
+text = await letters.next()
+await letters.over.wait()                # the page asks, and does not read: it is to be parted from
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+
+from pn2code.play.trouble import Json
+
+MOST_LETTERS = 10_000
+MOST_CHARACTERS = 64 << 20
+"""Of all together; one answer has up to two millions."""
+
+
+class Letters:
+    """They are texts already, so that one knows how large they are.
+
+    Args:
+        loop: in which they are sent.
+
+    Attributes:
+        over: set when there are too many; further ones are dropped.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._waiting: asyncio.Queue[str] = asyncio.Queue()
+        self._lock = threading.Lock()
+        self._count = self._characters = 0
+        self._is_over = False
+        self.over = asyncio.Event()
+
+    def put(self, said: Json) -> None:
+        """One more."""
+        text = text_of(said)
+        with self._lock:
+            if self._is_over:
+                return
+            self._count += 1
+            self._characters += len(text)
+            self._is_over = self._count > MOST_LETTERS or self._characters > MOST_CHARACTERS
+            if self._is_over:
+                self._loop.call_soon_threadsafe(self.over.set)
+            else:
+                self._loop.call_soon_threadsafe(self._waiting.put_nowait, text)
+
+    async def next(self) -> str:
+        """The oldest one, which is no longer there then."""
+        text = await self._waiting.get()
+        with self._lock:
+            self._count -= 1
+            self._characters -= len(text)
+        return text
+
+
+def text_of(said: Json) -> str:
+    """As it is sent."""
+    text = json.dumps(said, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return text.encode("utf-8", "replace").decode("utf-8")

@@ -1,0 +1,86 @@
+// @ts-check
+/** Curves over the time: clearance and conditioning, each kind in a chart with the limit of which it is warned. */
+
+import { upperBound } from "./course.js";
+import { shorten } from "./dom.js";
+
+/** Where the axis begins, and how high a line of a legend is. */
+export const LEFT = 108;
+export const LABEL = 11;
+const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+
+/**
+ * Curves that share a chart.
+ * @param {any} run
+ */
+export function charts(run) {
+  const curves = run.happenings?.curves ?? [];
+  const charts = [];
+  for (const [kind, title] of [["clearance", "clearance [mm]"], ["condition", "conditioning"]]) {
+    const own = curves.filter((/** @type {any} */ c) => c.kind === kind);
+    if (!own.length) continue;
+    const scale = kind === "clearance" ? 1000 : 1;
+    const limit = own[0].limit * scale;
+    let low = limit;
+    let high = limit;
+    for (const c of own) {
+      for (const v of c.v) {
+        if (!Number.isFinite(v)) continue;
+        low = Math.min(low, v * scale);
+        high = Math.max(high, v * scale);
+      }
+    }
+    charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.max(high * 1.15, 2) });
+  }
+  return charts;
+}
+
+/**
+ * @param {CanvasRenderingContext2D} c
+ * @param {any} axis the time: `x` of a moment, window, height of a chart, colours
+ * @param {any} chart
+ * @param {number} y
+ * @param {number} w
+ */
+export function drawChart(c, axis, chart, y, w) {
+  const CURVE = axis.curve;
+  const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
+  const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
+  c.fillStyle = axis.ink?.text ?? "";
+  c.fillText(chart.title, 8, y + 8);
+  c.save();
+  c.beginPath();
+  c.rect(LEFT, y - 1, w - LEFT, CURVE + 2);
+  c.clip();
+  c.strokeStyle = "#D55E00";
+  c.setLineDash([3, 3]);
+  c.beginPath();
+  c.moveTo(LEFT, at(chart.limit));
+  c.lineTo(w, at(chart.limit));
+  c.stroke();
+  c.setLineDash([]);
+  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
+    c.strokeStyle = CURVES[i % CURVES.length];
+    c.lineWidth = 1.5;
+    c.beginPath();
+    let isOpen = false;
+    const first = Math.max(upperBound(curve.t, axis.from) - 2, 0);
+    const last = Math.min(upperBound(curve.t, axis.to) + 2, curve.t.length);
+    for (let k = first; k < last; k++) {
+      const v = curve.v[k] * chart.scale;
+      if (!Number.isFinite(v)) {
+        isOpen = false;
+        continue;
+      }
+      if (isOpen) c.lineTo(axis.x(curve.t[k]), at(v));
+      else c.moveTo(axis.x(curve.t[k]), at(v));
+      isOpen = true;
+    }
+    c.stroke();
+  });
+  c.restore();
+  chart.curves.slice(0, 4).forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
+    c.fillStyle = CURVES[i % CURVES.length];
+    c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 21 + i * LABEL);
+  });
+}

@@ -1,0 +1,38 @@
+"""Fingers on the screen of a phone, as Chromium passes them on to a page."""
+
+from __future__ import annotations
+
+from helpers.browser import Page
+
+Point = tuple[float, float]
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+STEPS = 6
+
+
+class Fingers:
+    """What a person does with one finger or two."""
+
+    def __init__(self, page: Page) -> None:
+        self._page = page.page
+        self._session = page.page.context.new_cdp_session(page.page)
+
+    def _say(self, kind: str, points: list[Point]) -> None:
+        rows = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
+        self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": rows})
+
+    def move(self, *ways: tuple[Point, Point]) -> None:
+        """Each finger goes from one point to another, all at the same time."""
+        self._say("touchStart", [a for a, _ in ways])
+        for k in range(1, STEPS + 1):
+            share = k / STEPS
+            self._say(
+                "touchMove",
+                [(a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share) for a, b in ways],
+            )
+        self._say("touchEnd", [])
+
+    def hold(self, at: Point, ms: int = 900) -> None:
+        """A finger rests, and is taken away."""
+        self._say("touchStart", [at])
+        self._page.wait_for_timeout(ms)
+        self._say("touchEnd", [])
