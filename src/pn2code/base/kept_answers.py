@@ -7,9 +7,9 @@
 
 An answer that is out of date would be a false one, so a question is told apart by: the name and the parts given here;
 pn2code's version, and the size and both dates of each of its source files; the interpreter, and the libraries and
-programs that take part; the machine. Files that became known only while the answer
-was looked for are kept with it, by the SHA-256 of their content, and looked at again before it is believed. What has
-changed since the command began is never believed and never kept, for nobody knows which of its contents was read.
+programs that take part; the machine. Files that became known only while the answer was looked for are kept with it, by
+the SHA-256 of their content, and looked at again before it is believed. What has changed since the command began is
+never believed and never kept, for nobody knows which of its contents was read.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _NEVER = 2**63
 _MOST_LINKS = 40
 """That follow each other."""
 Stamp = tuple[str, int, int, int]
-"""A path, its size, when its content was changed, and when anything about it was, which nobody can set back."""
+"""A path, its size, when its content was changed, and when anything about it was: copying does not set that."""
 
 _LOADED_NS = time.time_ns()
 """A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
