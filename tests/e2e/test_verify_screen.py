@@ -163,6 +163,16 @@ def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
     assert [path.name for path in here.iterdir()] == ["mutex.traces"]
 
 
+def test_where_the_reasons_are_of_what_is_not_known(tmp_path: Path, here: Path) -> None:
+    net = write_net(MUTEX, tmp_path / "mutex.cpn")
+    asked = [word for n in range(20) for word in ("--property", f"ltl G (tokens(Free) < {n + 9})")]
+    _, lines, _ = verify(net, "--max-states", "2", *asked)
+    told = sum(line.startswith("?") for line in lines)
+    assert any(
+        line.startswith(f"   also not known ({20 - told}; --full says why): ") for line in lines
+    )
+
+
 def test_in_full(tmp_path: Path, here: Path) -> None:
     net = write_net(MUTEX, tmp_path / "mutex.cpn")
     code, lines, _ = verify(

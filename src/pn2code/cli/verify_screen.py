@@ -458,11 +458,14 @@ def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
 def _names_of(wrong: Sequence[_Item]) -> list[str]:
     """What failed and what is open, by name."""
     lines: list[str] = []
-    for kind, title in (("bad", "also NO"), ("open", "also not known")):
+    for kind, title, more in (
+        ("bad", "also NO", ""),
+        ("open", "also not known", "; --full says why"),
+    ):
         names = [item.name for item in wrong if item.kind == kind]
         if names:
             lines += textwrap.wrap(
-                f"{title} ({len(names)}): {', '.join(names)}",
+                f"{title} ({len(names)}{more}): {', '.join(names)}",
                 _WIDTH,
                 initial_indent="   ",
                 subsequent_indent="     ",
