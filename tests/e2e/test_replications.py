@@ -77,6 +77,7 @@ def test_the_reports(tmp_path: Path) -> None:
     assert "2 of 2 simulations" in result.stdout and "±95 %" in result.stdout
     several = page.read_text(encoding="utf-8")
     assert "95 % half length" in several and "Served &amp; gone" in several
+    assert "unicode-bidi: isolate" in several and f"<bdi>{net}</bdi>: 2 of 2" in several
     assert simulated(net, "--report", str(page), "-q").stdout == ""
     one = page.read_text(encoding="utf-8")
     assert "Timed statistics" in one and "Untimed statistics" in one and "Model time" not in one

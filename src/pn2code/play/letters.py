@@ -16,7 +16,7 @@ from pn2code.play.trouble import Json
 
 MOST_LETTERS = 10_000
 MOST_CHARACTERS = 64 << 20
-"""Of all together; one answer has up to two millions."""
+"""Of all together; one answer has up to two millions, and a single one may be of any length."""
 
 
 class Letters:
@@ -45,7 +45,8 @@ class Letters:
                 return
             self._count += 1
             self._characters += len(text)
-            self._is_over = self._count > MOST_LETTERS or self._characters > MOST_CHARACTERS
+            is_long = self._characters > MOST_CHARACTERS and self._count > 1
+            self._is_over = is_long or self._count > MOST_LETTERS
             if self._is_over:
                 self._loop.call_soon_threadsafe(self.over.set)
             else:

@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from pn2code.base.readable import readable
-from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import FlatNet
 from pn2code.replay.arrays import packed, packed_reals
 from pn2code.semantics.game.constant import constant_transitions
@@ -46,12 +45,6 @@ class Course:
         self._tokens: list[dict[Token, int]] = [{} for _ in net.places]
         self._token_place = array.array("q")
         self._is_rounded = False
-        self._reals = frozenset(
-            s.uid
-            for t in net.transitions
-            for s in t.variables
-            if may_hold_reals(s.type, net.program.datatypes)
-        )
         self._before: tuple[PlaceMarking, ...] = ()
         self._time = array.array("d")
         self._clock = array.array("d")
@@ -165,8 +158,7 @@ class Course:
         return known[token]
 
     def _value(self, transition: int, symbol: Any, value: Value) -> int:
-        if symbol.uid in self._reals and not self._is_rounded:
-            self._is_rounded = _is_rounded(value)
+        self._is_rounded = self._is_rounded or _is_rounded(value)
         return self._text(variable_text(TEXTS, symbol, value))
 
     def _text(self, text: str) -> int:

@@ -32,6 +32,12 @@ from pn2code.tdl import tree as t
 from pn2code.tdl.paths import names_in
 from pn2code.tdl.pretty import expression
 
+_GUARDS = "add guards that exclude each other if this is not intended"
+_EACH_ITS_OWN = (
+    "nothing is wrong if only one of the two messages can be there at a time; otherwise let one message say what is to "
+    "be done (docs/cookbook.md, recipe 26), or send the second one when the first one has been answered"
+)
+
 
 class States:
     """The decisions of a program; `left_out`: its transitions that never occur."""
@@ -91,6 +97,7 @@ class States:
                 both = set(a.channels) & set(b.channels)
                 if not self._exclude(self._known(a, both)[0], self._known(b, both)[0]):
                     first, second = a.step.transition, b.step.transition
+                    alone = a.channels and b.channels and not both
                     self._data.d.warning(
                         codes.CHOICE,
                         f"transitions `{first.short}` and `{second.short}` may be enabled together: "
@@ -102,7 +109,7 @@ class States:
                                 first.origin,
                             )
                         ],
-                        hint="add guards that exclude each other if this is not intended",
+                        hint=_EACH_ITS_OWN if alone else _GUARDS,
                     )
 
     def _exclude(self, a: t.Expression, b: t.Expression) -> bool:

@@ -528,6 +528,7 @@ def test_html_links_lead_somewhere_and_nothing_is_fetched() -> None:
     assert not [tag for tag, a in parser.tags if "src" in a or tag in ("link", "iframe", "img")]
     assert "http" not in re.sub(r'xmlns="[^"]*"', "", written)
     assert written == draw_net(found, Facts("small.cpn"))
+    assert "unicode-bidi: isolate" in written  # of names, whose marks turn nothing beside them
 
 
 def test_html_has_paths_a_tree_and_fusion_sets() -> None:

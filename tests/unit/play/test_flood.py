@@ -70,7 +70,8 @@ def test_a_page_that_only_waits_is_parted_from_as_well(monkeypatch: pytest.Monke
         async def receive_text(self) -> str:
             self.said += 1
             if self.said > 1:
-                seat.tell({"text": "x" * 5000})
+                seat.tell({"text": "x" * 5000})  # alone it may be long
+                seat.tell({"text": "x"})
                 await asyncio.Event().wait()
             return "nonsense"
 

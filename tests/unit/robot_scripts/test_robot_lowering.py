@@ -262,6 +262,8 @@ def test_messages_that_may_come_in_any_order(tmp_path: Path) -> None:
         "warning[robot-choice] transitions `First` and `Second` may be enabled together: "
         "the script of robot `robot1` prefers `First`"
     ]
+    (warned,) = cell.d
+    assert "let one message say what is to be done" in warned.hint
     assert cell.body.startswith(
         "loop\n  wait until filled(x) or filled(z)\n  if filled(x) then\n    read x into n\n"
     )
@@ -774,6 +776,8 @@ def test_a_transition_that_another_one_always_precedes_is_named(tmp_path: Path) 
         "warning[robot-choice] transitions `T` and `U` may be enabled together: "
         "the script of robot `robot1` prefers `T`"
     ]
+    (warned,) = cell.d
+    assert warned.hint == "add guards that exclude each other if this is not intended"
     assert "because a transition that comes before it is always possible." in cell.text
 
 

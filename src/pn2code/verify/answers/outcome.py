@@ -13,7 +13,7 @@ from typing import Literal
 from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
-from pn2code.verify.answers.reasons import clause, raised
+from pn2code.verify.answers.reasons import clause, raises
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.result import Exploration, Known
 
@@ -143,7 +143,7 @@ def error_text(net: FlatNet, found: Exploration) -> str:
     what = f"`{net.transitions[index].name}`" if index is not None else error["where"]
     if binding:
         what += f" with {', '.join(f'{k} = {v}' for k, v in binding.items())}"
-    return f"{what} raises {raised(error['message'])}"
+    return f"{what} {raises(error['message'])}"
 
 
 def _has_raised(found: Exploration) -> bool:

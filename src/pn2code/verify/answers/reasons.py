@@ -41,3 +41,27 @@ def clause(why: str) -> str:
 def raised(message: str) -> str:
     """An exception as it stands in a sentence: in back-ticks, unless its text has some of its own."""
     return message if "`" in message else f"`{message}`"
+
+
+_NO_EXCEPTIONS = {
+    "colour outside its colour set": "gives a value that is not in its colour set",
+    "place is full": "puts more tokens into a place than there is room for",
+    "memory for lists and strings is full": "needs more memory for lists and strings than there is",
+    "recursion too deep": "calls functions too deep within each other",
+    "an evaluation without end": "does not come to an end",
+    "a model time beyond 64 bits": "gives a model time beyond 64 bits",
+    "a function that is not available here": "calls a function that is not available here",
+}
+"""What the compiled net says, in words of its own (`pn_error_name`), where no exception of CPN ML is raised."""
+
+
+def raises(message: str) -> str:
+    """What is wrong, behind what does it: `raises `Div``, `gives a value that is not in its colour set`."""
+    return _NO_EXCEPTIONS.get(message) or f"raises {raised(message)}"
+
+
+def raised_there(message: str, by: str) -> str:
+    """The same as a clause about a place that has been named, and the expression that does it, if that is known."""
+    if message in _NO_EXCEPTIONS:
+        return f"{by or 'it'} {_NO_EXCEPTIONS[message]}"
+    return f"{raised(message)} is raised there" + (f" by {by}" if by else "")

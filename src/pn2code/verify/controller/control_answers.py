@@ -12,7 +12,7 @@ from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.semantics.game.token_game import GameError
 from pn2code.verify.answers.culprit import culprit
-from pn2code.verify.answers.reasons import clause, raised
+from pn2code.verify.answers.reasons import clause, raised_there
 from pn2code.verify.controller.control_types import (
     BLOCKING,
     BOUNDED,
@@ -193,11 +193,13 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     by = ""
     if trace is not None:
         exact = keep.culprit(trace.file, index, found.error.get("binding"))
-        by = f" by `{' '.join(exact.span.text.split())}`" if exact and exact.span else ""
+        by = f"`{' '.join(exact.span.text.split())}`" if exact and exact.span else ""
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
-        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there{by}"
+        says = (
+            f"the supervisor stops in {where}: {raised_there(str(found.error.get('message')), by)}"
+        )
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
