@@ -85,7 +85,7 @@ def check_geometry(
     from pn2code.robot import scene  # loads NumPy, which nets without a cell do not need
     from pn2code.robot.files_of import files_of
 
-    before, files = len(d.items), set[Path]()
+    before, files = d.reported, set[Path]()
     for layout in config.layouts or {"": ""}:
         cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         if cell is None:
@@ -96,7 +96,7 @@ def check_geometry(
             files |= files_of(stands)
             if taken is not None:
                 _check_loads(stands, cell, taken, f" in layout `{layout}`" if layout else "", d)
-    if question is not None and len(d.items) == before:
+    if question is not None and d.reported == before:
         question.keep(FINE, files)
 
 

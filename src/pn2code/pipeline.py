@@ -132,7 +132,7 @@ def generate(
         question = kept_proofs.asked(kept, begun_as, config, replaced, given)
         proofs = kept_proofs.recalled(question)
     if proofs is None:
-        before = len(d.items)
+        before = d.reported
         arms = _arms(config, d)
         proofs = prove(
             begun_as,
@@ -142,7 +142,7 @@ def generate(
             arms=arms,
             tokens={g.place: g.says for g in begun.given},
         )
-        if question is not None and proofs is not None and len(d.items) == before:
+        if question is not None and proofs is not None and d.reported == before:
             kept_proofs.keep(question, proofs, arms.files if arms is not None else ())
     if proofs is None or d.has_errors:
         return None

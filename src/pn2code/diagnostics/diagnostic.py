@@ -68,6 +68,7 @@ class Diagnostics:
     """What the stages of one run have to say; the only mutable value handed from stage to stage."""
 
     items: list[Diagnostic] = field(default_factory=list)
+    _times: int = field(default=0, repr=False, compare=False)
     _looked_at: list[Diagnostic] = field(default_factory=list, repr=False)
     _list: list[Diagnostic] | None = field(default=None, repr=False)
     _errors: list[Diagnostic] = field(default_factory=list, repr=False)
@@ -122,6 +123,7 @@ class Diagnostics:
         hint: str,
     ) -> None:
         require_code(code)
+        self._times += 1
         span = at if isinstance(at, Span) else None
         origin = at.origin if isinstance(at, Span) else at
         fixed = tuple(Note(n) if isinstance(n, str) else n for n in notes)
@@ -156,6 +158,11 @@ class Diagnostics:
             self._known.add(item)
             if item.severity is Severity.ERROR:
                 self._errors.append(item)
+
+    @property
+    def reported(self) -> tuple[int, int]:
+        """What changes whenever something is reported, also what was reported before and is listed once."""
+        return self._times, len(self.items)
 
     @property
     def has_errors(self) -> bool:

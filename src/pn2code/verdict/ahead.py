@@ -47,9 +47,9 @@ def look_ahead(
             return
     from pn2code.verdict.in_space import look_in_space  # loads NumPy and PyBullet
 
-    before = len(d.items)
+    before = d.reported
     files = look_in_space(config, programs, d)
-    if question is not None and len(d.items) == before:
+    if question is not None and d.reported == before:
         question.keep(FINE, files)
 
 

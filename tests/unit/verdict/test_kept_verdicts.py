@@ -93,6 +93,19 @@ def test_check_looks_again_when_the_cell_or_a_program_changes(
 
 
 @pytest.mark.bullet
+def test_what_was_said_before_is_not_kept_as_nothing(
+    kept: Callable[[], KeptAnswers], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Diagnostics list once what is said twice."""
+    monkeypatch.setattr("pn2code.robot.scene.FEW_RADIANS", 6.0)
+    toml = TOML + ROBOT + "home = [0.1, -5.5, 5.5, 0.0, 5.5, 0.0]\n"
+    path, d = cell(tmp_path / "cell", toml=toml), Diagnostics()
+    for _ in range(2):
+        checking.check(path, {}, d, kept=kept())
+    assert not d.has_errors and found(path, kept()) == [x.code for x in d.items] == ["robot-home"]
+
+
+@pytest.mark.bullet
 def test_check_looks_again_when_a_model_changes(
     kept: Callable[[], KeptAnswers], looked: list[str], tmp_path: Path
 ) -> None:
