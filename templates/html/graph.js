@@ -124,6 +124,7 @@
     var place = boxOf(number);
     look(place.x + place.width / 2, place.y + place.height / 2, Math.min(whole.width, size().width));
     sheet.parentNode.scrollIntoView({ block: "nearest" });
+    sheet.dataset.node = number;
   }
   window.addEventListener("hashchange", show);
 

@@ -73,7 +73,7 @@ def test_a_node_is_found_by_its_number(page: Any) -> None:
     page.keyboard.type("17")
     assert page.locator("#results a").first.text_content() == "node 17"
     page.keyboard.press("Enter")
-    page.wait_for_url("**#node-17")
+    page.wait_for_selector(".sheet[data-node='17']")
     assert middle(page) == pytest.approx(centre(page, 17), abs=1)
     near = page.eval_on_selector_all("a.near", "all => all.map(a => a.getAttribute('href'))")
     rows = page.eval_on_selector_all(
@@ -139,6 +139,7 @@ def test_a_large_picture_is_on_a_canvas(
         assert not browser.page.locator(".sheet svg").is_visible()
         browser.page.fill("#search", "34")
         browser.page.keyboard.press("Enter")
+        browser.page.wait_for_selector(".sheet[data-node='34']")
         x, y = centre_of_canvas(browser.page)
         browser.page.mouse.wheel(0, -200)
         browser.page.mouse.click(x, y)

@@ -101,9 +101,13 @@ class Page:
             raise AssertionError(f"the page is not ready: {self.errors}") from problem
 
     def wait(self, condition: str) -> None:
-        """Until a condition holds (the page's own policy forbids Playwright's way to wait)."""
+        """Until a condition holds (the page's own policy forbids Playwright's way to wait); an error if it does not."""
+        most = 3 * PATIENCE_MS
         self.ask(
-            f"() => new Promise(done => (function f() {{ ({condition}) ? done() : requestAnimationFrame(f) }})())"
+            f"""() => new Promise((done, fail) => {{
+              setTimeout(() => fail(new Error("{most} ms have not been enough")), {most});
+              (function f() {{ ({condition}) ? done() : requestAnimationFrame(f) }})();
+            }})"""
         )
 
     def ask(self, script: str, value: Any = None) -> Any:

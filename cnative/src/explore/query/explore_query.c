@@ -297,6 +297,23 @@ static bool find_enabled(ex_queries_t *queries)
     return is_fine;
 }
 
+/* Of a part, a node all of whose arcs are missing may be dead, or not. */
+static bool may_be_dead(const ex_queries_t *queries, ex_item_t *item)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    if (graph->cut == NULL) {
+        return true;
+    }
+    item->may = with_cut(queries, item->set);
+    item->set = (item->may != NULL) ? item->set : NULL;
+    for (uint32_t node = 0U; (item->may != NULL) && (node < graph->nodes); node++) {
+        if (graph->row[node] != graph->row[node + 1U]) {
+            item->may[node >> 6U] &= ~((uint64_t)1U << (node & 63U));
+        }
+    }
+    return item->may != NULL;
+}
+
 static bool find_simple(ex_queries_t *queries, ex_item_t *item)
 {
     const ex_graph_t *const graph = queries->run->graph;
@@ -313,7 +330,7 @@ static bool find_simple(ex_queries_t *queries, ex_item_t *item)
             EX_SET_BIT(item->set, node);
         }
     }
-    return true;
+    return (item->kind != EX_ITEM_DEAD) || may_be_dead(queries, item);
 }
 
 /* An exception in an operand is one in the item. */
