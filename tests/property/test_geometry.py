@@ -113,6 +113,28 @@ def test_linear_moves_are_on_the_line_or_refused(q, shift, turn):
     assert np.abs(path[0] - q).max() < 1e-5
 
 
+@settings(max_examples=40, deadline=None)
+@given(positions(), st.sampled_from(range(3)), st.floats(0.05, 0.4))
+def test_no_line_leaps_where_it_begins(q, axis, angle):
+    """With a straight wrist the axes before and after it are only known together."""
+    cell = riveting_cell("good")
+    robot = cell.robot("robot1")
+    k = robot.kinematics
+    q[4] = 0.0
+    start = k.forward(q)
+    turn = [angle if i == axis else 0.0 for i in range(3)]
+    try:
+        move = plan_lin(
+            k, q, start, start @ matrix_of(Pose(0, 0, 0, *turn)), robot.limits(cell.motion)
+        )
+    except MotionFault as fault:
+        assert fault.kind in ("unreachable", "joint-limit", "singularity", "axis-speed")
+        return
+    path = move.sample(np.linspace(0.0, move.duration, 23))
+    assert np.abs(path[0] - q).max() < 1e-5
+    assert not np.isnan(path).any()
+
+
 @given(lengths, lengths, lengths)
 def test_translations_add(x, y, z):
     both = translation(x, y, z) @ translation(-x, -y, -z)

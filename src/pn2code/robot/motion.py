@@ -40,6 +40,8 @@ _CHECK_TIME = 0.01
 _CHECK_LENGTH = 0.002
 _CHECK_ANGLE = math.radians(0.5)
 _SAME = 1e-12
+# rad (of axes that slide: m): how far the closed form may be off where it begins.
+_SAME_POSITION = 1e-5
 # m: places that are nearer to each other are one; of a chord's length: so flat, an arc is a line.
 _NEAR = 1e-6
 _FLAT = 1e-5
@@ -586,6 +588,7 @@ def led(
     """The joint positions along a way, checked; `swivel`: of the arm angle, where the arm has one."""
     out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start, swivel)
     _check_line(kinematics, out, limits)
+    _check_start(kinematics, out, start)
     return out
 
 
@@ -675,6 +678,24 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
         pose=pose_of(kinematics.forward(path[first])),
         q=tuple(path[first].tolist()),
         time=float(times[first]),
+    )
+
+
+def _check_start(kinematics: Kinematics, lin: LinearTrajectory, start: Array) -> None:
+    """In a singularity many joint positions have the same TCP pose; the way must begin at the arm's own."""
+    leap = np.abs(lin.grid[0] - start)
+    axis = int(np.argmax(leap))
+    if leap[axis] <= _SAME_POSITION:
+        return
+    arm, condition = kinematics.arm, kinematics.conditioning(start)
+    raise MotionFault(
+        "singularity",
+        f"the {lin.line.name} begins in a singularity (condition number {condition_text(condition.condition)}, elbow "
+        f"{math.degrees(condition.elbow):.1f} deg from straight, wrist {math.degrees(condition.wrist):.1f} deg): "
+        f"{arm.called(axis)} would have to leap by {arm.shown(axis, leap[axis], 1)} {arm.unit(axis)}",
+        pose=pose_of(kinematics.forward(start)),
+        q=tuple(start.tolist()),
+        time=0.0,
     )
 
 
