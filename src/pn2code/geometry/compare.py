@@ -84,8 +84,10 @@ class Comparison:
             shape = self._shapes[leg.robot]
             # Names for the collision library that no other part has that is shown at the same time.
             named = tuple(
-                replace(p, name=held(p.name, leg.robot) if p.holder else on_plate(p.name, p.plate))
-                for p in load
+                replace(
+                    p, name=held(p.name, leg.robot) if p.holder else on_plate(p.name, p.plate, i)
+                )
+                for i, p in enumerate(load, 1)
             )
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
             self._tracks[key] = Track(shape, leg, links, named)

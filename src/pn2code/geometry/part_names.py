@@ -1,10 +1,12 @@
 """Parts have names of their own in the collision library, so that all can be shown at once; people see those of runs.
 
     held("blank.1", "arm")              # "blank.1.held_by_arm"
+    on_plate("blank.1", "left/plate", 2)                # "blank.1.on_left_plate_2"
     as_in_runs("arm/blank.1.held_by_arm")               # "arm/blank.1"
     as_seen(apart)                      # with such names in `where` and in the reason
 
-Of parts of a kind that are handled in the same way the first one is named.
+Of parts of a kind that are handled in the same way the first one is named; so two that stand on one turntable while two
+programs are half way may have one name in runs: each of them has put a first one there.
 """
 
 from __future__ import annotations
@@ -23,9 +25,9 @@ def held(part: str, robot: str) -> str:
     return f"{part}.held_by_{robot}"
 
 
-def on_plate(part: str, plate: str) -> str:
-    """Of a part on a turntable or belt."""
-    return f"{part}.on_{plate.replace('/', '_')}"
+def on_plate(part: str, plate: str, number: int) -> str:
+    """Of a part on a turntable or belt; `number`: of those that are moved together."""
+    return f"{part}.on_{plate.replace('/', '_')}_{number}"
 
 
 def standing(part: str) -> str:
