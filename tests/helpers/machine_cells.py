@@ -11,6 +11,7 @@ from __future__ import annotations
 from random import Random
 
 from helpers.cell_texts import ARM, GOING, head
+from helpers.task_nets import task_net, told
 
 _PARTIES = {"F": "Feeder", "M": "Mill", "A": "Arm", "T": "Table"}
 _TASKS = (
@@ -119,11 +120,6 @@ def machine_cell(random: Random) -> tuple[str, str]:
     tasks = _TASKS[:count]
     edges = {(i, j) for j, (_, _, waits) in enumerate(tasks) for i in waits}
     edges = {e for e in sorted(edges) if random.random() >= careless}
-    last: dict[str, int] = {}
-    for j, (party, _, _) in enumerate(tasks):
-        if party in last:
-            edges.add((last[party], j))
-        last[party] = j
     is_stacked = random.random() < 0.5
     numbers = {
         "DOOR": f"{random.choice([900.0, 900.0, 700.0, 500.0]):.1f}",
@@ -133,58 +129,19 @@ def machine_cell(random: Random) -> tuple[str, str]:
         "SLOT": f"(at (0.0, {random.choice([850.0, 850.0, 760.0, 700.0, 690.0]):.1f}, "
         f"{551.0 + 150.0 * is_stacked + random.choice([0.0, 0.0, 3.0, 6.0]):.1f}))",
     }
-    lines = [_HEAD.rstrip(), *_top(), *_supervisor(tasks, sorted(edges))]
-    for party, name in _PARTIES.items():
-        lines += [f"  page {name}", "    place f port in : INT", "    place d port out : INT"]
-        lines.append("    place Waiting = 1")
-        for i, (own, does, _) in enumerate(tasks):
-            if own != party:
-                continue
-            for key, value in numbers.items():
-                does = does.replace(key, value)
-            lines += [
-                f"    trans Do{i} code action ({does})",
-                "      in Waiting : ()",
-                f"      in f : {i}",
-            ]
-            lines += ["      out Waiting : ()", f"      out d : {i}"]
+    made = []
+    for i, (party, does, _) in enumerate(tasks):
+        for key, value in numbers.items():
+            does = does.replace(key, value)
+        made.append((party, told(i, does)))
     parts = [f"{{ x = {x:.3f}, y = -0.9, z = 0.575 }}" for x in _on_belt(random)]
     if is_stacked:
         parts.append("{ x = 0.0, y = 0.85, z = 0.475 }")
     toml = _TOML.replace("PARTS", ", ".join(parts))
-    return "\n".join(lines) + "\n", toml.replace("LEAF", f"{random.uniform(0.6, 0.8):.3f}")
+    net = task_net(_HEAD, _PARTIES, made, edges)
+    return net, toml.replace("LEAF", f"{random.uniform(0.6, 0.8):.3f}")
 
 
 def _on_belt(random: Random) -> list[float]:
     first = random.choice([0.0, random.uniform(-0.6, 0.0)])
     return [first, first - random.uniform(0.105, 0.3)][: random.choice([1, 2, 2])]
-
-
-def _top() -> list[str]:
-    lines = [f"    place {c}{p} : INT" for p in _PARTIES for c in "fd"]
-    sockets = ", ".join(f"{c}{p} -> {c}{p}" for p in _PARTIES for c in "fd")
-    lines.append(f"    subst Supervisor = Sup ({sockets})")
-    return [
-        *lines,
-        *(f"    subst {name} = {name} (f -> f{p}, d -> d{p})" for p, name in _PARTIES.items()),
-    ]
-
-
-def _supervisor(
-    tasks: tuple[tuple[str, str, tuple[int, ...]], ...], edges: list[tuple[int, int]]
-) -> list[str]:
-    lines = ["  page Sup"]
-    lines += [f"    place f{p} port out : INT" for p in _PARTIES]
-    lines += [f"    place d{p} port in : INT" for p in _PARTIES]
-    lines += [f"    place After{i}Before{j}" for i, j in edges]
-    for i, (party, _, _) in enumerate(tasks):
-        lines += [f"    place Ready{i} = 1", f"    place Busy{i}", f"    place Done{i}"]
-        lines += [f"    trans Send{i}", f"      in Ready{i} : ()"]
-        lines += [f"      in After{a}Before{b} : ()" for a, b in edges if b == i]
-        lines += [f"      out f{party} : {i}", f"      out Busy{i} : ()"]
-        lines += [f"    trans Got{i}", f"      in Busy{i} : ()", f"      in d{party} : {i}"]
-        lines += [f"      out After{a}Before{b} : ()" for a, b in edges if a == i]
-        lines.append(f"      out Done{i} : ()")
-    lines += ["    place Finished", "    trans Finish"]
-    lines += [f"      in Done{i} : ()" for i in range(len(tasks))]
-    return [*lines, "      out Finished : ()"]

@@ -12,6 +12,7 @@ from __future__ import annotations
 from random import Random
 
 from helpers.cell_texts import ARM, GOING, head
+from helpers.task_nets import Task, task_net, told
 
 _PARTIES = {"F": "Feeder", "M": "Mill", "A": "Arm"}
 _EYE, _GATE, _INSIDE = ("eye", True), ("gate", True), ("inside", False)
@@ -96,33 +97,21 @@ _SEES = {
 def sighted_cell(random: Random) -> tuple[str, str]:
     """The net and the cell.toml."""
     tasks = _TASKS[: random.choice([5, 5, 7, len(_TASKS)])]
-    edges = []
-    last: dict[str, int] = {}
+    edges: set[tuple[int, int]] = set()
     asked: set[str] = set()
-    pages: dict[str, list[str]] = {p: [] for p in _PARTIES}
+    made: list[Task] = []
     door = f"{random.choice([900.0] * 5 + [700.0]):.1f}"
     for i, (party, does, waits, asks) in enumerate(tasks):
         # Whoever closes the door when the arm is out, and does not wait for that it stays out, races.
         often = [12, 1, 12, 1] if asks == _INSIDE else [4, 8, 20, 1]
         way = random.choices(["waits", "asks", "both", "neither"], often)[0]
         if way in ("waits", "both") or asks is None:
-            edges += [(j, i) for j in waits]
-        if party in last:
-            edges.append((last[party], i))
-        last[party] = i
+            edges |= {(j, i) for j in waits}
         is_asking = asks is not None and way in ("asks", "both")
         if asks is not None and is_asking:
             asked.add(asks[0])
-        pages[party] += _task(i, does.replace("DOOR", door), asks if is_asking else None, random)
-    lines = [_HEAD.rstrip()]
-    lines += [f"    place {c}{p} : INT" for p in _PARTIES for c in "fd"]
-    sockets = ", ".join(f"{c}{p} -> {c}{p}" for p in _PARTIES for c in "fd")
-    lines.append(f"    subst Supervisor = Sup ({sockets})")
-    lines += [f"    subst {name} = {name} (f -> f{p}, d -> d{p})" for p, name in _PARTIES.items()]
-    lines += _supervisor([party for party, *_ in tasks], sorted(set(edges)))
-    for party, name in _PARTIES.items():
-        lines += [f"  page {name}", "    place f port in : INT", "    place d port out : INT"]
-        lines += ["    place Waiting = 1", *pages[party]]
+        own = _task(i, does.replace("DOOR", door), asks if is_asking else None, random)
+        made.append((party, own))
     toml = (
         _TOML.replace("PARTS", random.choice(["", "", "{ y = -0.9, z = 0.575 }"]))
         .replace("HOME", f"{random.choice([0.0, 0.9]):.1f}")
@@ -130,16 +119,13 @@ def sighted_cell(random: Random) -> tuple[str, str]:
         .replace("WIDE", f"{random.choice([0.2, 0.6, 1.4]):.1f}")
     )
     sensors = [f"[sensors.{x}]\n{_SEES[x]}\n" for x in sorted(asked)]
-    return "\n".join(lines) + "\n", toml + "".join(sensors)
+    return task_net(_HEAD, _PARTIES, made, edges), toml + "".join(sensors)
 
 
 def _task(i: int, does: str, asks: tuple[str, bool] | None, random: Random) -> list[str]:
     """Its transitions: it does what it is told, or asks before that whether it may."""
     if asks is None:
-        return [
-            f"    trans Do{i} code action ({does})",
-            *("      in Waiting : ()", f"      in f : {i}", "      out Waiting : ()", f"      out d : {i}"),
-        ]  # fmt: skip
+        return told(i, does)
     sensor, wanted = asks
     if random.random() < 0.4:  # in one transition: the sensor is asked first
         yes, no = (f"({does})", "()") if wanted else ("()", f"({does})")
@@ -160,21 +146,3 @@ def _task(i: int, does: str, asks: tuple[str, bool] | None, random: Random) -> l
         f"    trans Skip{i}",
         *(f"      in Said{i} : {no}", "      out Waiting : ()", f"      out d : {i}"),
     ]
-
-
-def _supervisor(parties: list[str], edges: list[tuple[int, int]]) -> list[str]:
-    lines = ["  page Sup"]
-    lines += [f"    place f{p} port out : INT" for p in _PARTIES]
-    lines += [f"    place d{p} port in : INT" for p in _PARTIES]
-    lines += [f"    place After{i}Before{j}" for i, j in edges]
-    for i, party in enumerate(parties):
-        lines += [f"    place Ready{i} = 1", f"    place Busy{i}", f"    place Done{i}"]
-        lines += [f"    trans Send{i}", f"      in Ready{i} : ()"]
-        lines += [f"      in After{a}Before{b} : ()" for a, b in edges if b == i]
-        lines += [f"      out f{party} : {i}", f"      out Busy{i} : ()"]
-        lines += [f"    trans Got{i}", f"      in Busy{i} : ()", f"      in d{party} : {i}"]
-        lines += [f"      out After{a}Before{b} : ()" for a, b in edges if a == i]
-        lines.append(f"      out Done{i} : ()")
-    lines += ["    place Finished", "    trans Finish"]
-    lines += [f"      in Done{i} : ()" for i in range(len(parties))]
-    return [*lines, "      out Finished : ()"]
