@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from helpers.carrying_cell import NET, TOML, write
+from helpers.looking_cell import ELSEWHERE, LOOKING, SENSOR, changed
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
@@ -19,17 +20,6 @@ from pn2code.verify.exploring.limits import Limits
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
-# The feeder brings one box, and forgets the others; the arm looks whether there is one. `BRING` waits for nothing: so
-# the feeder may still be at it when the arm looks.
-LOOKING = (
-    ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
-    ("    place Done : PART\n    trans Accept", "    place Done : PART\n    place Asked : ANSWER\n    trans Accept"),
-    ("    trans Place code", "    trans Look\n      in Told : n\n      out Asked : (n, there)\n"
-     "    trans Skip\n      in Asked : (n, false)\n      out Done : n\n    trans Place code"),
-    ("      in Told : n\n      out Done : n", "      in Asked : (n, true)\n      out Done : n"),
-    ("    trans Feed code", "    trans Forget guard [n <> 1]\n      in Busy : n\n      out fed : n\n"
-     "      out Idle : ()\n    trans Feed guard [n = 1] code"),
-)  # fmt: skip
 AT_ONCE = (
     ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
     ("    place Done : PART\n", "    place Done : PART\n    place Was : BOOL\n"),
@@ -39,35 +29,17 @@ AT_ONCE = (
      "moveLinear (up (slot n))) else ())\n      in Told : n\n      out Was : there"),
     *LOOKING[4:],
 )  # fmt: skip
-SENSOR = '[sensors.eye]\nvariable = "there"\nsees = "infeed"\npart = "box"\n'
+# `EARLY` waits for nothing: so the feeder may still be at it when the arm looks.
 EARLY = (
     ("      in Feeding : n\n      in fed : n\n", "      in Feeding : n\n"),
     ("      in placed : n\n", "      in placed : n\n      in fed : n\n"),
 )
-ELSEWHERE = """
-[zones.tip]
-pose = { x = 1.35, z = 1.37 }
-size = [0.2, 0.2, 0.2]
-[zones.aside]
-pose = { x = -2.0, z = 1.0 }
-size = [0.2, 0.2, 0.2]
-[devices.feeder.axes.flap]
-kind = "swing"
-pose = { x = 3.0 }
-from = 0.0
-to = 90.0
-home = 30.0
-objects = [{ name = "leaf", size = [0.2, 0.02, 0.2], pose = { z = 0.5 } }]
-"""
 
 
 def situations(
     folder: Path, *changes: tuple[str, str], sensor: str = SENSOR, parts: int = 2, toml: str = TOML
 ) -> Situations:
-    net = NET.replace("parts = 2", f"parts = {parts}")
-    for old, new in changes:
-        assert old in net, old
-        net = net.replace(old, new, 1)
+    net = changed(NET.replace("parts = 2", f"parts = {parts}"), *changes)
     d = Diagnostics()
     opened = read(write(folder, net, toml + sensor), {}, d)
     assert opened is not None and opened.config is not None, [e.message for e in d.errors]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from helpers.carrying_cell import NET, TOML, write
+from helpers.looking_cell import ELSEWHERE, LOOKING, SENSOR, changed
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load
 from pn2code.diagnostics import Diagnostics
@@ -16,40 +17,12 @@ from pn2code.verdict.opened import read
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
-CHANGES = (
-    ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
-    ("    place Done : PART\n    trans Accept", "    place Done : PART\n    place Asked : ANSWER\n    trans Accept"),
-    ("    trans Place code", "    trans Look\n      in Told : n\n      out Asked : (n, there)\n"
-     "    trans Skip\n      in Asked : (n, false)\n      out Done : n\n    trans Place code"),
-    ("      in Told : n\n      out Done : n", "      in Asked : (n, true)\n      out Done : n"),
-    ("    trans Feed code", "    trans Forget guard [n <> 1]\n      in Busy : n\n      out fed : n\n"
-     "      out Idle : ()\n    trans Feed guard [n = 1] code"),
-)  # fmt: skip
-SENSOR = '[sensors.eye]\nvariable = "there"\nsees = "infeed"\npart = "box"\n'
-
-MORE = """
-[zones.tip]
-pose = { x = 1.35, z = 1.37 }
-size = [0.2, 0.2, 0.2]
-[zones.aside]
-pose = { x = 1.35, y = 1.0, z = 1.37 }
-size = [0.2, 0.2, 0.2]
-[devices.feeder.axes.flap]
-kind = "swing"
-pose = { x = 3.0 }
-from = 0.0
-to = 90.0
-home = 30.0
-objects = [{ name = "leaf", size = [0.2, 0.02, 0.2], pose = { z = 0.5 } }]
-"""
+NEAR = ELSEWHERE.replace("x = -2.0, z = 1.0", "x = 1.35, y = 1.0, z = 1.37")
+assert NEAR != ELSEWHERE
 
 
 def cell(folder: Path, sensor: str = SENSOR) -> Path:
-    net = NET
-    for old, new in CHANGES:
-        assert old in net, old
-        net = net.replace(old, new, 1)
-    return write(folder, net, TOML + sensor)
+    return write(folder, changed(NET, *LOOKING), TOML + sensor)
 
 
 def test_it_says_whether_a_part_is_there(tmp_path: Path) -> None:
@@ -73,7 +46,7 @@ def test_it_says_whether_a_part_is_there(tmp_path: Path) -> None:
     ],
 )
 def test_it_sees_arms_in_zones_and_where_axes_are(tmp_path: Path, sees: str, first: bool) -> None:
-    toml = f'[sensors.eye]\nvariable = "there"\nsees = {sees}\n{MORE}'
+    toml = f'[sensors.eye]\nvariable = "there"\nsees = {sees}\n{NEAR}'
     d = Diagnostics()
     options = RunOptions(tmp_path / "run", backend="fake", looks=False, checked=False)
     found = run_cell(cell(tmp_path / "cell", toml), options, d)
