@@ -10,18 +10,12 @@ from e2e.test_check_geometry import looked
 from helpers import belt_cell as belts
 from helpers.belt_cell import belt_cell
 from helpers.door_cell import NET, TOML, door_cell
-from pn2code.cell.divide import divide
+from helpers.situations_of import graph_of, situations
 from pn2code.diagnostics import Diagnostics
-from pn2code.geometry.activities import Doing
 from pn2code.geometry.answers import STOPPED
-from pn2code.geometry.check import cells_of
-from pn2code.geometry.graph import CellGraph, explore_cell
-from pn2code.geometry.legs import Planner
 from pn2code.geometry.reach_look import Wanted
 from pn2code.geometry.reach_look import look as reach
-from pn2code.geometry.situations import Situations
 from pn2code.pipeline import generate
-from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.timing.doings import NS, Doings
 from pn2code.verdict.opened import read
@@ -167,27 +161,6 @@ def test_a_run_stops_where_an_arm_is_too_fast_in_a_zone(tmp_path: Path) -> None:
     record = found.record
     assert record.verdict == "failed" and record.time > 0.0
     assert "mm/s fast at" in record.reason and "in zone `front`, where 200.0" in record.reason
-
-
-def graph_of(folder: Path) -> tuple[CellGraph, RobotCell]:
-    """A cell as its programs run, and what stands in it."""
-    d = Diagnostics()
-    opened = read(folder, {}, d)
-    assert opened is not None and opened.config is not None, [e.message for e in d.errors]
-    partition, cells = divide(opened.flat, opened.config, d), cells_of(opened.config, None, d)
-    assert partition is not None and cells is not None, [e.message for e in d.errors]
-    ((_, arms),) = cells
-    graph = explore_cell(partition, opened.storage, Limits(), d)
-    assert graph is not None and not graph.why
-    return graph, arms
-
-
-def situations(folder: Path) -> Situations:
-    """All situations of a cell, of which nothing is swept."""
-    graph, arms = graph_of(folder)
-    found = Situations(graph, Doing(Planner(arms), arms), tuple(r.name for r in arms.moving))
-    found.explore()
-    return found
 
 
 def test_a_belt_may_begin_to_run_when_a_part_is_half_way_out(tmp_path: Path) -> None:

@@ -8,15 +8,8 @@ import pytest
 
 from helpers.carrying_cell import NET, TOML, write
 from helpers.looking_cell import ELSEWHERE, LOOKING, SENSOR, changed
-from pn2code.cell.divide import divide
-from pn2code.diagnostics import Diagnostics
-from pn2code.geometry.activities import Doing
-from pn2code.geometry.check import cells_of
-from pn2code.geometry.graph import explore_cell
-from pn2code.geometry.legs import Planner
+from helpers.situations_of import situations
 from pn2code.geometry.situations import Situations
-from pn2code.verdict.opened import read
-from pn2code.verify.exploring.limits import Limits
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -36,21 +29,11 @@ EARLY = (
 )
 
 
-def situations(
+def looked(
     folder: Path, *changes: tuple[str, str], sensor: str = SENSOR, parts: int = 2, toml: str = TOML
 ) -> Situations:
     net = changed(NET.replace("parts = 2", f"parts = {parts}"), *changes)
-    d = Diagnostics()
-    opened = read(write(folder, net, toml + sensor), {}, d)
-    assert opened is not None and opened.config is not None, [e.message for e in d.errors]
-    partition, cells = divide(opened.flat, opened.config, d), cells_of(opened.config, None, d)
-    assert partition is not None and cells is not None, [e.message for e in d.errors]
-    ((_, arms),) = cells
-    graph = explore_cell(partition, opened.storage, Limits(), d)
-    assert graph is not None and not graph.why
-    found = Situations(graph, Doing(Planner(arms), arms), tuple(r.name for r in arms.moving))
-    found.explore()
-    return found
+    return situations(write(folder, net, toml + sensor))
 
 
 def faults(found: Situations) -> set[str]:
@@ -73,21 +56,21 @@ def said(found: Situations) -> set[tuple[int, bool]]:
 
 def test_what_has_come_is_seen_and_what_has_not_is_not(tmp_path: Path) -> None:
     """As a run of the same cell has it (`test_sensors_that_see`)."""
-    found = situations(tmp_path, *LOOKING)
+    found = looked(tmp_path, *LOOKING)
     assert not found.why and not faults(found)
     assert said(found) == {(1, True), (2, False)}
 
 
 def test_where_it_may_come_just_then_it_is_seen_or_not(tmp_path: Path) -> None:
-    found = situations(tmp_path, *LOOKING, *EARLY, parts=1)
+    found = looked(tmp_path, *LOOKING, *EARLY, parts=1)
     assert said(found) == {(1, True), (1, False)}
 
 
 def test_who_is_asked_before_the_commands_is_asked_when_they_begin(tmp_path: Path) -> None:
-    found = situations(tmp_path / "a", *AT_ONCE)
+    found = looked(tmp_path / "a", *AT_ONCE)
     assert not found.why and not faults(found)
     # What it was told when it began stays so, whatever others do meanwhile.
-    early = situations(tmp_path / "b", *AT_ONCE, *EARLY, parts=1)
+    early = looked(tmp_path / "b", *AT_ONCE, *EARLY, parts=1)
     told = {(sensor, value) for s in early.situations for _, sensor, value in s.said}
     assert told == {("eye", True), ("eye", False)}
     assert any(s.contents.standing and (1, "eye", False) in s.said for s in early.situations)
@@ -107,7 +90,7 @@ def test_who_is_asked_before_the_commands_is_asked_when_they_begin(tmp_path: Pat
 )
 def test_zones_and_axes(tmp_path: Path, sees: str, answers: set[bool]) -> None:
     sensor = f'[sensors.eye]\nvariable = "there"\nsees = {sees}\n{ELSEWHERE}'
-    found = situations(tmp_path, *LOOKING, sensor=sensor, parts=1)
+    found = looked(tmp_path, *LOOKING, sensor=sensor, parts=1)
     assert {value for n, value in said(found) if n == 1} == answers
 
 
@@ -119,5 +102,5 @@ def test_what_a_device_brings_and_takes_away_again_stands_there_meanwhile(tmp_pa
     )
     clear = 'clear = { command = "tool", action = "clear", duration_s = 2.0, removes = "box", at = "infeed" }\n'
     toml = TOML.replace("[robots.robot]", clear + "[robots.robot]", 1)
-    found = situations(tmp_path, *changes, toml=toml, sensor="", parts=1)
+    found = looked(tmp_path, *changes, toml=toml, sensor="", parts=1)
     assert any(where.startswith("box") for _, _, where in found.beside)
