@@ -587,8 +587,8 @@ def led(
 ) -> LinearTrajectory:
     """The joint positions along a way, checked; `swivel`: of the arm angle, where the arm has one."""
     out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start, swivel)
-    _check_line(kinematics, out, limits)
     _check_start(kinematics, out, start)
+    _check_line(kinematics, out, limits)
     return out
 
 
@@ -682,10 +682,13 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
 
 
 def _check_start(kinematics: Kinematics, lin: LinearTrajectory, start: Array) -> None:
-    """In a singularity many joint positions have the same TCP pose; the way must begin at the arm's own."""
+    """In a singularity many joint positions have the same TCP pose; the way must begin at the arm's own.
+
+    What comes after another one says nothing of the arm, so this is looked at first.
+    """
     leap = np.abs(lin.grid[0] - start)
     axis = int(np.argmax(leap))
-    if leap[axis] <= _SAME_POSITION:
+    if not leap[axis] > _SAME_POSITION:  # nan: out of reach, which is told with the rest of the way
         return
     arm, condition = kinematics.arm, kinematics.conditioning(start)
     raise MotionFault(

@@ -167,6 +167,16 @@ def test_line_exactly_through_a_straight_wrist_is_a_singularity(robot, limits):
     assert fault.kind == "singularity"
 
 
+@pytest.mark.parametrize("turned", [-90, -60, -30, 30, 60, 90])
+def test_a_line_that_begins_with_a_straight_wrist_is_told_so(robot, limits, turned):
+    """Not that an axis would leave its limits, on a branch on which the arm is not at all."""
+    q = np.radians([0, -80, 100, turned, 0, 0])
+    fault = fault_of(robot.kinematics, q, pose_mm(0, 0, 10), limits)
+    assert fault.kind == "singularity"
+    assert "begins in a singularity" in str(fault) and "would have to leap by" in str(fault)
+    assert fault.time == 0.0
+
+
 def test_too_fast_a_line_is_not_called_a_singularity(robot, limits):
     fast = replace(limits, linear_acceleration=100.0, linear_jerk=10000.0)
     fault = fault_of(robot.kinematics, START, pose_mm(200, 0, 0), fast, 6.0)
