@@ -1,7 +1,6 @@
-"""What stands on a part that a tool carries: it goes along, as long as that stays level, and must not be too much.
+"""What stands on a part that a tool carries: it goes along, as long as that stays level.
 
-    tilted(robot, q, parts)                     # "`box.1` on ... leans by 12.3 deg ...", "": nothing does
-    too_heavy(robot, kinds, T_tcp_parts)        # "" or "9.2 kg, but 7 kg are rated"
+    tilted(robot, q, parts)         # "`arm` tilts `box.2` by 12.3 deg, ...", "": nothing leans too far
 
 It only lies there, so how far it may lean is a matter of friction: 10 degrees are a coefficient of 0.18.
 """
