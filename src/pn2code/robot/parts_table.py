@@ -17,9 +17,8 @@ from pn2code.base.frozen import frozen
 from pn2code.cell_file.geometry import PART, POSE
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
-from pn2code.robot.hulls import Hull
 from pn2code.robot.scene_objects import SceneObject, read_shape
-from pn2code.robot.solid_objects import A_BODY
+from pn2code.robot.solid_objects import expect_body
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_own_pose
 
@@ -57,9 +56,7 @@ def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
         angle = math.radians(table.number("grip_angle_deg"))
         mass = table.number("mass")
         if shape is not None:
-            if shape.mesh is not None and shape.mesh.is_file() and Hull.of(shape) is None:
-                # Nobody could say what it stands on, or whether it is in a zone.
-                table.wrong("file", A_BODY)
+            expect_body(table, shape)  # else nobody could say what it stands on, or is in a zone
             table.done()
             out[name] = PartKind(name, shape, at, grips, tolerance, angle, mass)
     return out

@@ -14,8 +14,6 @@ from pn2code.robot.hulls import Hull
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Table
 
-A_BODY = "an OBJ or STL file that can be read, of a body that is not flat"
-
 
 def read_solids(
     tables: Iterable[Table], folder: Path, *, solid: bool = True
@@ -31,6 +29,12 @@ def read_solids(
         if thing is None:
             continue
         out.append(thing)
-        if solid and thing.mesh is not None and thing.mesh.is_file() and Hull.of(thing) is None:
-            table.wrong("file", A_BODY)
+        if solid:
+            expect_body(table, thing)
     return tuple(out)
+
+
+def expect_body(table: Table, thing: SceneObject) -> None:
+    """Reports a mesh file, if it is there, of which no body can be read."""
+    if thing.mesh is not None and thing.mesh.is_file() and Hull.of(thing) is None:
+        table.wrong("file", "an OBJ or STL file that can be read, of a body that is not flat")
