@@ -16,6 +16,7 @@ from typing import TypeVar
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.contents import Contents, parts_of, spot
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.shown import Shown
@@ -39,51 +40,8 @@ from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
-_DIGITS = 6
 _SLACKS = (0.0, ROUNDING, -ROUNDING)
 _Done = TypeVar("_Done")
-
-
-@frozen(eq=False)
-class Contents:
-    """Which parts are where: in the world, in tools, on turntables.
-
-    Args:
-        number: of these contents, among all.
-    """
-
-    number: int
-    parts: Parts
-
-    @property
-    def standing(self) -> dict[str, Part]:
-        """Parts that stand still, by what makes them equal."""
-        return {spot(p): p for p in self.parts.present.values() if not p.carrier}
-
-    def held_by(self, robot: str) -> Part | None:
-        """What a robot carries in its tool."""
-        return self.parts.held_by(robot)
-
-    def load(self, robot: str) -> Load:
-        """What a robot moves: what its tool holds, and what stands on its turntables."""
-        return tuple(
-            sorted((p for p in self.parts.present.values() if p.carrier == robot), key=spot)
-        )
-
-
-Load = tuple[Part, ...]
-
-
-def spot(part: Part) -> str:
-    """The same for parts of a kind that are in the same place, or in the same hand in the same way."""
-    numbers = np.round(part.frame[:3], _DIGITS) + 0.0
-    out = f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
-    return out if part.up is None else f"{out} up {(np.round(part.up, _DIGITS) + 0.0).tolist()}"
-
-
-def spots(load: Load) -> str:
-    """The same for what is moved in the same way."""
-    return "; ".join(map(spot, load))
 
 
 @frozen(eq=False)
@@ -504,14 +462,6 @@ def _tried(
     if not found:
         raise faults[0]
     return found, faults
-
-
-def parts_of(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
-    """The parts, to be handled otherwise, with turntables where they are."""
-    parts = contents.parts.copy(slack)
-    for stand in standing:
-        parts.stand(stand.robot, stand.q)
-    return parts
 
 
 def _nearly(what: str) -> str:

@@ -18,9 +18,10 @@ from functools import partial
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
+from pn2code.geometry.activities import Activity
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
+from pn2code.geometry.contents import Contents, Load, spot, spots
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.level import level
 from pn2code.geometry.part_names import gap_as_seen, held, on_plate, standing

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pn2code.geometry.activities import Load, spots
+from pn2code.geometry.contents import Load, spots
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.tracks import ArmShape, Link, Track

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pn2code.geometry.activities import Load
 from pn2code.geometry.answers import Verdict
+from pn2code.geometry.contents import Load
 from pn2code.geometry.legs import Leg
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Trajectory

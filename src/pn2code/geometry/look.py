@@ -12,10 +12,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity, Doing, Load, spots
+from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.answers import Layout, Move, Pair, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
+from pn2code.geometry.contents import Load, spots
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.part_names import as_seen

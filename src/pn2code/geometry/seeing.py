@@ -18,7 +18,8 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import SensorConfig
-from pn2code.geometry.activities import Activity, Contents, Doing, Load, parts_of, spot
+from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.contents import Contents, Load, parts_of, spot
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.in_zones import InZones
 from pn2code.geometry.legs import Leg, Stand

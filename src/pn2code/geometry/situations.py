@@ -20,7 +20,8 @@ from dataclasses import replace
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
-from pn2code.geometry.activities import Activity, Contents, Doing, spot
+from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.contents import Contents, spot
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.seeing import Scene, Seeing

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pn2code.geometry.activities import Load
 from pn2code.geometry.answers import Verdict
+from pn2code.geometry.contents import Load
 from pn2code.geometry.sweeps import RESOLUTION
 from pn2code.geometry.tracks import Knots, Track
 from pn2code.robot.along import AlongTrajectory

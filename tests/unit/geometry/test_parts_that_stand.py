@@ -14,8 +14,9 @@ import pytest
 from helpers.stacking_cell import TOML
 from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.geometry.activities import Contents, Doing
+from pn2code.geometry.activities import Doing
 from pn2code.geometry.compare import Comparison
+from pn2code.geometry.contents import Contents
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.shown import Shown
 from pn2code.robot.bullet import BulletBackend

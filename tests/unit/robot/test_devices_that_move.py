@@ -14,9 +14,9 @@ from helpers.door_cell import TOML, door_cell
 from helpers.robot_cells import nowhere, pose_mm
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
-from pn2code.geometry.activities import Contents
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
+from pn2code.geometry.contents import Contents
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.look import touch_in_words
 from pn2code.geometry.shown import Shown
