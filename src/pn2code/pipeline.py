@@ -126,11 +126,9 @@ def generate(
     if d.has_errors:
         return None
     begun_as = replace(partition, net=begun.net)
-    proofs, question = None, None
-    if checked:
-        given = begun.given, sorted(begun.checksums.items())
-        question = kept_proofs.asked(kept, begun_as, config, replaced, given)
-        proofs = kept_proofs.recalled(question)
+    given = begun.given, sorted(begun.checksums.items())
+    question = kept_proofs.asked(kept if checked else None, begun_as, config, replaced, given)
+    proofs = kept_proofs.recalled(question)
     if proofs is None:
         before = d.reported
         arms = _arms(config, d)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -536,8 +536,9 @@ def test_properties_are_about_the_cell(
     )
     found = explore(opened.flat, {}, limits, d, options)
     assert found is not None, render.report(d)
-    wanted = replace(wanted, partition=divided(opened.flat, opened.config, d))
-    looked = look(opened, wanted.partition, found, limits, options, folder, d, wanted.plain)
+    partition = divided(opened.flat, opened.config, d)
+    assert partition is not None
+    looked = look(opened, partition, found, limits, options, folder, d, wanted.plain)
     never = Deadline.after(None)
     (said,) = answered(wanted, opened, found, (), folder, "x", never, d, looked)
     assert not d.items, render.report(d)
@@ -581,6 +582,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     found = explore(opened.flat, {}, Limits(), d, ExploreOptions(quick=True))
     assert found is not None
     partition = divided(opened.flat, opened.config, d)
+    assert partition is not None
     looked = look(opened, partition, found, Limits(), ExploreOptions(), tmp_path, d)
     assert looked is not None
     check = next(c for c in looked.checks if c.name == "capacity")

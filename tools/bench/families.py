@@ -12,16 +12,14 @@ retries   robots whose sensor tells whether they have a part; if not they try ag
 from __future__ import annotations
 
 import argparse
-import json
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))  # as pytest does
+
+from tools.bench.tending import DEVICE, verified
 
 from helpers.netbuilder import cpn
 
@@ -37,25 +35,6 @@ net family
   var t: TRY;
   var n: INT;
   page Top
-"""
-_SCRIPT = """
-  page Page{name}
-    place job port in : JOB
-    place said port out : SAID
-    place Waiting = 1
-    place Told
-    place Done
-    trans Accept
-      in Waiting : ()
-      in job : j
-      out Told : ()
-    trans Work code action work ()
-      in Told : ()
-      out Done : ()
-    trans Report
-      in Done : ()
-      out Waiting : ()
-      out said : {said}
 """
 Lines = list[str]
 
@@ -193,7 +172,7 @@ def net(family: str, size: int, parts: int) -> str:
         top.append(f"    subst R{i} = PageR{i} (job -> job{i}, said -> said{i})")
     top.append(f"    subst Supervisor = Supervisor ({', '.join(sockets)})")
     said = "held" if family == "retries" else "1"
-    scripts = "".join(_SCRIPT.format(name=f"R{i}", said=said) for i in numbers)
+    scripts = "".join(DEVICE.format(name=f"PageR{i}", said=said) for i in numbers)
     page = [*top, "  page Supervisor", *ports, *FAMILIES[family](size, parts)]
     return _HEAD + "\n".join(page) + "\n" + scripts
 
@@ -223,14 +202,7 @@ def measured(family: str, size: int, parts: int, options: Sequence[str]) -> str:
     """One row of the table: what `pn2code verify CELL` says."""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         cell = write(Path(name), family, size, parts)
-        command = [sys.executable, "-m", "pn2code", "verify", str(cell), "--json", "--no-graph"]
-        began = time.perf_counter()
-        done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
-        took = time.perf_counter() - began
-    try:
-        said: dict[str, Any] = json.loads(done.stdout)
-    except ValueError:
-        raise SystemExit(done.stderr) from None
+        said = verified(cell, *options)
     checks = [c["answer"] for c in said["controller"]]
     medium = said["medium"][0]
     files = f"{medium['answer']}, {medium['nodes']:,}" + (" reduced" * medium["reduced"])
@@ -238,7 +210,7 @@ def measured(family: str, size: int, parts: int, options: Sequence[str]) -> str:
     space = said["cell"]
     how = "all" if not space["reduced"] else "counted" if space["bounds"] is None else "in turns"
     whole = "" if space["complete"] else "more than "
-    return f"{how} | {whole}{space['states']:,} | {answers} | {files} | {took:.0f}"
+    return f"{how} | {whole}{space['states']:,} | {answers} | {files} | {said['wall']:.0f}"
 
 
 def main() -> int:

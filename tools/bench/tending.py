@@ -188,7 +188,7 @@ _ARM = """
       out Waiting : ()
       out said : k
 """
-_DEVICE = """
+DEVICE = """
   page {name}
     place job port in : JOB
     place said port out : SAID
@@ -239,8 +239,8 @@ def net(parts: int) -> str:
         _SUPERVISOR.format(ports="\n".join(ports), parts=parts),
         _ARM.format(name="PageArm1", look="Look", said="held"),
         _ARM.format(name="PageArm2", look="Leave", said="1"),
-        *(_DEVICE.format(name=f"Page{d}", said="1") for d in ("Loader", "Mill")),
-        _DEVICE.format(name="PageFinisher", said="verdict"),
+        *(DEVICE.format(name=f"Page{d}", said="1") for d in ("Loader", "Mill")),
+        DEVICE.format(name="PageFinisher", said="verdict"),
     ]
     return _HEAD + "\n".join(top) + "".join(pages)
 
@@ -300,32 +300,25 @@ def write_properties(cell: Path) -> None:
     (cell / "cell.properties.toml").write_text("\n".join(rows), encoding="utf-8")
 
 
+def verified(path: Path, *options: str) -> dict[str, Any]:
+    """What `pn2code verify` says of a net or cell; `wall` are the seconds of the whole command."""
+    command = [sys.executable, "-m", "pn2code", "verify", str(path), "--json", "--no-graph"]
+    began = time.perf_counter()
+    done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+    took = time.perf_counter() - began
+    try:
+        found: dict[str, Any] = json.loads(done.stdout)
+    except ValueError:
+        raise SystemExit(done.stderr) from None
+    return {**found, "wall": took}
+
+
 def measure(parts: int, limits: list[str], *options: str) -> dict[str, Any]:
-    """What `pn2code verify` says of the closed net; `wall` are the seconds of the whole command."""
+    """The same of the closed net of so many parts."""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
-        cell = write(Path(name), parts)
-        command = [
-            sys.executable,
-            "-m",
-            "pn2code",
-            "verify",
-            str(cell / "cell.cpn"),
-            "--json",
-            "--no-graph",
-        ]
-        command += ["--no-controller", "--no-medium"]
-        began = time.perf_counter()
-        done = subprocess.run(
-            [*command, "--most-traces", "0", *limits, *options],
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        try:
-            found: dict[str, Any] = json.loads(done.stdout)
-        except ValueError:
-            raise SystemExit(done.stderr) from None
-        return {**found, "wall": time.perf_counter() - began}
+        net_file = write(Path(name), parts) / "cell.cpn"
+        plain = ("--no-controller", "--no-medium", "--most-traces", "0")
+        return verified(net_file, *plain, *limits, *options)
 
 
 def main() -> int:

@@ -20,7 +20,7 @@ import os
 import stat
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import cached_property
 from importlib.util import find_spec
@@ -121,7 +121,7 @@ class Question:
         is_certain: whether who answers is who was there when the command began, and not installed since.
     """
 
-    def __init__(self, file: Path, is_settled: Any, *, is_certain: bool) -> None:
+    def __init__(self, file: Path, is_settled: Callable[[Path], bool], *, is_certain: bool) -> None:
         self.file = file
         self._is_settled = is_settled
         self._is_certain = is_certain

@@ -168,7 +168,7 @@ def delayed_tokens(
     e: core.Exp, form: Form, program: core.Program
 ) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None, core.Exp | None]]:
     """As `tokens`, of inscriptions that may have a delay, which is the third component."""
-    e = e if form in (Form.TOKEN, Form.TIMED_TOKEN) else opened(e, program)
+    e = e if form in (Form.TOKEN, Form.TIMED_TOKEN) else opened(e, program, at_start=False)
     match e:
         case core.If(condition, then, otherwise) if form in _PLAIN:
             for holds, part in ((True, then), (False, otherwise)):
@@ -514,7 +514,7 @@ def initial_tokens(
     e: core.Exp, form: Form, program: core.Program
 ) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None]]:
     """As `tokens`, of an initial marking, which may be a constant, and in which tokens may have time stamps."""
-    plain = e if form is Form.TOKEN else opened(e, program)
+    plain = e if form is Form.TOKEN else opened(e, program, at_start=True)
     return tokens(plain, Form.TOKEN if form is Form.TIMED_TOKEN else form)
 
 

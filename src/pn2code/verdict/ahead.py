@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import assert_never
 
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
@@ -76,4 +77,6 @@ def _shape(nodes: Iterable[Node]) -> list[object]:
                 out.append(("if", inner, None if otherwise is None else _shape(otherwise)))
             case Comment():
                 pass
+            case _:
+                assert_never(node)  # what is not told here would be taken for the same
     return out

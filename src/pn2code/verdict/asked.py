@@ -30,22 +30,11 @@ class Asked:
     splits: tuple[tuple[Split, str], ...] = ()
     """nets for those about bindings, each with its questions"""
     partition: Partition | None = None
-    """the cell that it is asked of, for all who look at what its programs do; None: the net is no cell"""
+    """who runs what in the cell that it is asked of; None: the net is no cell"""
 
     def __bool__(self) -> bool:
         """Whether anything is asked."""
         return bool(self.properties.properties)
-
-    @property
-    def of_cell(self) -> Partition:
-        """The cell.
-
-        Raises:
-            ValueError: it is not said; what is found of the net alone must not be said of a cell.
-        """
-        if self.partition is None:
-            raise ValueError("what is said of a cell needs who runs what in it")
-        return self.partition
 
     @property
     def plain(self) -> m.Properties:

@@ -27,26 +27,25 @@ Answers = tuple[Answer, ...]
 
 def look(
     opened: OpenNet,
-    partition: Partition | None,
+    partition: Partition,
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
     d: Diagnostics,
     control: Control | None = None,
 ) -> Answers:
-    """All checks; none for a net that is no cell, or that could not be explored to the end because of an error.
+    """All checks; none for a cell that could not be explored to the end because of an error.
 
     Args:
-        opened: the net.
-        partition: who runs what in it; None: it is no cell.
+        opened: the cell.
+        partition: who runs what in it.
         found: its own state space. Where that is too large, that with the medium is as well, and a part is seen.
         limits: of each exploration.
         options: who is told of the progress, and who may interrupt.
         d: gets the errors.
         control: the checks of its supervisor; None: they were not asked.
     """
-    if opened.config is None or partition is None:
-        return ()
+    assert opened.config is not None, "it has been divided"
     if found.why in ("interrupted", "error") or options.interrupted():
         return ()
     is_small = found.complete or found.why in ("decided", "approximation", COUNTED)

@@ -29,7 +29,7 @@ QUICK_STATES = 5_000
 
 def look(
     opened: OpenNet,
-    partition: Partition | None,
+    partition: Partition,
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
@@ -37,25 +37,19 @@ def look(
     d: Diagnostics,
     asked: m.Properties = m.Properties(),  # noqa: B008 - frozen
 ) -> Control | None:
-    """All checks, and what the explorer says of properties; None for a net that is no cell, or after an error.
+    """All checks, and what the explorer says of properties; None after an error.
 
     Args:
-        opened: the net.
-        partition: who runs what in it; None: it is no cell.
+        opened: the cell.
+        partition: who runs what in it.
         found: its state space. Where that is too large, the one that the checks need is as well, and a part is seen.
         limits, options: of the exploration.
         folder: where traces go.
         d: gets the errors.
         asked: the properties.
-
-    Raises:
-        ValueError: a cell without its partition; what is found of the net alone must not be said of it.
     """
     config = opened.config
-    if config is None:
-        return None
-    if partition is None:
-        raise ValueError("what is said of a cell needs who runs what in it")
+    assert config is not None, "it has been divided"
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)
     bounds = (options.sizes.bounds if options.sizes is not None else None) or {}

@@ -115,7 +115,6 @@ def _bindings_of_cell(
     """Those of a cell as it runs: its net is made of the parts of the transitions."""
     if control is None:
         return closed
-    partition = asked.of_cell
     running = control.running
     said: Sequence[Mapping[str, Any]] = ()
     seen = control.found
@@ -126,7 +125,9 @@ def _bindings_of_cell(
         # Of parts of a transition of the supervisor it is not seen which binding comes first.
         is_choosing = any(
             split.names.count(t.name) > 1
-            for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True)
+            for t, owner in zip(
+                opened.flat.transitions, control.partition.transition_owner, strict=True
+            )
             if owner == 0
         )
         lines = running.lines(first=not is_choosing, names=split.names)
@@ -155,7 +156,6 @@ def _bindings_of_cell(
             about,
             said,
             looked,
-            partition,
             closed,
             storage=opened.storage,
             all_orders=is_choosing,
@@ -227,16 +227,7 @@ def answered(
     if nondeterminism.counts(opened.flat):
         plain, more = tuple(map(counted, plain)), tuple(map(counted, more))
     if control is not None:
-        plain = tuple(
-            of_cell(
-                asked.plain,
-                control.answers,
-                control,
-                asked.of_cell,
-                plain,
-                storage=opened.storage,
-            )
-        )
+        plain = tuple(of_cell(asked.plain, control.answers, control, plain, storage=opened.storage))
     by_name = {answer.about.name: answer for answer in (*plain, *more)}
     given = tuple(by_name[p.name] for p in asked.properties.properties)
     named = _named(given, folder, stem)

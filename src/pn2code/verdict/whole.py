@@ -197,7 +197,11 @@ def look(
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
+        ValueError: a cell without its partition; what is found of the net alone must not be said of it.
     """
+    cell = asked.partition
+    if cell is None and opened.config is not None:
+        raise ValueError("what is said of a cell needs who runs what in it")
     options = replace(options, initial=opened.initial)
     own_options = None if own_options is None else replace(own_options, initial=opened.initial)
     # What the places hold is worked out once for all explorations of the net.
@@ -205,38 +209,34 @@ def look(
         sizes = Sizes.start(opened.flat, opened.storage)
         options = replace(options, sizes=sizes)
         own_options = replace(own_options, sizes=sizes) if own_options is not None else None
-    is_cell = opened.config is not None and bool(checks.controller or checks.channel_model or asked)
+    asks_control = bool(checks.controller or asked)
+    is_cell = cell is not None and (asks_control or checks.channel_model)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
     of_net = own_options or options
-    if is_cell and of_net.covering and of_net.sizes is not None:
-        of_net = replace(of_net, heaps=_open_channels(asked.partition, of_net.sizes))
+    if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
+        of_net = replace(of_net, heaps=_open_channels(cell, of_net.sizes))
     may_count = is_cell and properties.are_of_states(asked)
-    found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=asked.partition)
+    found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
     control: Control | None = None
-    if checks.controller or asked:
-        if opened.config is not None:
-            options.stage("exploring the cell as its programs run ...")
-        has_more = checks.channel_model and is_cell
+    if cell is not None and asks_control:
+        options.stage("exploring the cell as its programs run ...")
+        has_more = checks.channel_model
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
-        control = controller.look(
-            opened, asked.partition, found, part, options, folder, d, asked.plain
-        )
+        control = controller.look(opened, cell, found, part, options, folder, d, asked.plain)
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: channel_model.Answers = ()
-    if checks.channel_model:
-        if opened.config is not None:
-            options.stage("exploring the cell together with its shared files ...")
+    if cell is not None and checks.channel_model:
+        options.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
-        seen = channel_model.look(opened, asked.partition, found, limits, options, d, looked)
+        seen = channel_model.look(opened, cell, found, limits, options, d, looked)
     return Looked(found, control, more, seen)
 
 
-def _open_channels(partition: Partition | None, sizes: Sizes) -> frozenset[int]:
+def _open_channels(cell: Partition, sizes: Sizes) -> frozenset[int]:
     """The channels in which the structure of the net bounds no messages: a file holds one."""
-    channels = () if partition is None else (c.place for c in partition.channels)
-    return frozenset(channels) - set(sizes.bounds or ())
+    return frozenset(c.place for c in cell.channels) - set(sizes.bounds or ())
 
 
 def conclude(

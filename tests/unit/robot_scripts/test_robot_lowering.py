@@ -634,6 +634,12 @@ REFUSED = {
         (),
         "error[unsupported-robot-time] transition `T` puts a token with a time stamp (`@`)",
     ),
+    "stamps that were made at the start": (
+        "place A : TUNIT = 1`()\ntrans T\n  in A : ()\n  out A : late",
+        (),
+        "error[unsupported-robot-program] the number of tokens that this inscription puts is not known before it is "
+        "evaluated",
+    ),
     "a computed stamp on an arc": (
         "place A : TUNIT = 1`()\nplace B : INT = 1`1\ntrans T\n  in A : ()\n  both B : n\n"
         "  out A : 1`(if n > 1 then () @ 5 else () @ 6)",
@@ -697,6 +703,7 @@ colset INTS = list INT;
 var l : INTS;
 fun fac 0 = 1 | fac n = n * fac (n - 1);
 fun part (n, true) = n | part (1, false) = 2;
+val late = 1`() @+ 5;
 """
 
 

@@ -37,7 +37,7 @@ def test_a_yes_whose_premise_does_not_hold(
 ) -> None:
     ends = Check(BLOCKING, "yes", "", assumes=PREMISES.of_check(BLOCKING, "yes"))
     nobody: Any = None
-    control = Control((ends, Check(CHANNELS, "yes", "")), None)
+    control = Control(nobody, (ends, Check(CHANNELS, "yes", "")), None)
     cycle = Cycle((), "", (), None, None, (), 1, 2 * NS, late, stops)
     layouts = (
         Layout("a", (), (), Cycle((), "", (), None, None, (), 1, NS), 1, ""),

@@ -26,6 +26,7 @@ HEAD = """net orders
     place Kind : C = 1`1
     place Out
     place Put : C
+    place Sized : REAL
 """
 
 
@@ -67,6 +68,7 @@ def test_what_commutes(text: str) -> None:
         two("in A : (); inhibit Out : ()", "in B : (); out Out : ()"),
         two("in A : (); reset B", "in Out : (); out B : ()"),
         two("in A : (); reset Free", "both Free : (); in B : ()"),  # what is tested is gone
+        two("in A : (); out Sized : 0.0", "in B : (); out Sized : ~0.0"),  # the sign of the first
         two("in Left : n; out Left : n - 1; in A : ()", "in Left : n; out Left : 2 * n; in B : ()"),
         two("in Left : n; out Left : n - 1; in A : ()", "both Left : 3; in B : ()"),
         two("in Left : n; out Left : n - 1; in A : ()", "both Left : n; in B : n`()"),

@@ -55,6 +55,8 @@ def problem(
     asked = answer.about.asked
     if not as_net and (isinstance(asked, m.Response) or _looks_at_enabled(asked)):
         return None  # that it is a run is all that the net can say
+    if answer.answer == "no":
+        asked = _of_paths(asked)
     match asked:
         case m.Invariant(condition):
             graph, nodes = _graph(game, [markings[0], markings[-1]], predicates, {condition})
@@ -64,15 +66,6 @@ def problem(
             size = len(markings[-1].places[place])
             if size >= (low or 0) and (high is None or size <= high):
                 return f"the last marking of the trace has {size} tokens"
-        case m.Branching(formula) if answer.answer == "no" and _of_paths(formula) is not None:
-            straight = _of_paths(formula)
-            assert straight is not None
-            graph, nodes = _graph(game, markings, predicates, {straight})
-            path = _lasso(graph, nodes, steps, evidence.loop, exact_times, as_net)
-            if isinstance(path, str):
-                return path
-            if judge_ltl.holds_on(graph, straight, path):
-                return "the formula is true on the run"
         case m.Linear(formula, fair):
             fair = fair if as_net else ()  # of a cell that is not seen in the net
             looks = {formula, *(m.Atom("enabled", x.transition) for x in fair)}
@@ -98,19 +91,19 @@ def problem(
     return None
 
 
-def _of_paths(f: m.Formula) -> m.Formula | None:
-    """What a formula that one run can violate says of each path; None: it is another one."""
-    match f:
-        case m.Op("AF", (p,)) if m.is_of_nodes(p):
-            return m.Op("F", (p,))
-        case m.Op("AG", (m.Op("AF", (p,)),)) if m.is_of_nodes(p):
-            return m.Op("G", (m.Op("F", (p,)),))
-        case m.Op("AG", (m.Op("implies", (q, m.Op("AF", (p,)))),)) if m.is_of_nodes(
+def _of_paths(asked: m.Asked) -> m.Asked:
+    """What a formula that branches, and that one run can violate, says of each path; all else as it is."""
+    match asked:
+        case m.Branching(m.Op("AF", (p,))) if m.is_of_nodes(p):
+            return m.Linear(m.Op("F", (p,)))
+        case m.Branching(m.Op("AG", (m.Op("AF", (p,)),))) if m.is_of_nodes(p):
+            return m.Linear(m.Op("G", (m.Op("F", (p,)),)))
+        case m.Branching(m.Op("AG", (m.Op("implies", (q, m.Op("AF", (p,)))),))) if m.is_of_nodes(
             p
         ) and m.is_of_nodes(q):
-            return m.Op("G", (m.Op("implies", (q, m.Op("F", (p,)))),))
+            return m.Linear(m.Op("G", (m.Op("implies", (q, m.Op("F", (p,)))),)))
         case _:
-            return None
+            return asked
 
 
 class _Waits:

@@ -1,6 +1,6 @@
 """Properties of a cell: what is so of the cell as it runs, and where the closed net differs.
 
-    for answer in of_cell(properties, control, partition, answers): ...
+    for answer in of_cell(properties, said, control, answers): ...
 
 The answer is that of the cell (`verify.controller.running`). Where it was not seen to its end, an invariant that
 holds in a closed
@@ -110,7 +110,6 @@ def of_cell(
     properties: m.Properties,
     said: Sequence[Mapping[str, Any]],
     control: Control,
-    partition: Partition,
     closed: Sequence[Answer],
     *,
     storage: Mapping[str, str] | None = None,
@@ -122,12 +121,11 @@ def of_cell(
         properties: what was asked.
         said: what the explorer says of the cell.
         control: what the cell was looked at in.
-        partition: the cell.
         closed: the answers of the closed net.
         storage: as for `Game`.
         all_orders: whether the supervisor was left its choice, so that it may do less.
     """
-    found = control.found
+    found, partition = control.found, control.partition
     if found is None:
         looked: Sequence[Answer] = [
             Answer(p, "inconclusive", clause(control.why)) for p in properties.properties

@@ -347,6 +347,7 @@ def examine(
         premises = plan.premises
         premises = replace(premises, moving=not is_short(said, STILL))
         control = Control(
+            partition,
             checks,
             found,
             running,
@@ -550,4 +551,4 @@ def not_looked(
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why, of_cell=False))
     checks += reach(told_poses(poses, seen, NEVER), partition, seen, None, keep, why)
-    return Control((*checks, ownership(partition)), None, why=why)
+    return Control(partition, (*checks, ownership(partition)), None, why=why)

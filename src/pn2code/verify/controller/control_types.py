@@ -231,6 +231,7 @@ class Control:
     """All checks of a cell, and what they were looked up in.
 
     Args:
+        partition: the cell.
         checks: with their answers.
         found: the space of the cell as it runs; None: there is none.
         running: its net; None: the cell cannot be modelled so, and `why` says why.
@@ -244,6 +245,7 @@ class Control:
         program: of the whole cell as it runs; None: there is none.
     """
 
+    partition: Partition
     checks: tuple[Check, ...]
     found: Exploration | None
     running: Running | None = None

@@ -13,10 +13,11 @@ Two firings t and u are two transitions, or one with two bindings. It is shown t
                   segment gives nothing
   one urgency     all transitions of the supervisor have the same priority: what one firing enables holds none back
   both at once    no place has to be empty, or is emptied, that the other one changes, nor is one emptied that the
-                  other one takes from or tests; and of a place from which one
-                  takes tokens the other one neither takes nor tests any, unless the place holds one token, and the
-                  two change it in ways that commute (`updates`). What is put there besides hinders nobody: the
-                  binding that was enabled still is, and tokens add up in any order
+                  other one takes from or tests; and of a place from which one takes tokens the other one neither takes
+                  nor tests any, unless the place holds one token, and the two change it in ways that commute
+                  (`updates`). What is put there besides hinders nobody: the binding that was enabled still is, and
+                  tokens add up in any order; but not where tokens have reals, since of 0.0 and ~0.0, which are one
+                  token, a place keeps the sign of what was there first
   never at once   or the two are never enabled together: constants, or an invariant of the net, exclude it
                   (`structure.relations`); or there is no such state among all that the supervisor comes to when it
                   takes any of its firings
@@ -31,6 +32,7 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import combinations
 
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -136,13 +138,18 @@ def _clash(
 ) -> bool:
     """Whether the one may hinder the other at a place, or lead to another marking of it."""
     one, other = uses[t.index][place], uses[u.index][place]
+    if (one.changes or other.changes) and may_hold_reals(
+        net.places[place].colset.type, net.program.datatypes
+    ):
+        return True
     if any(_disturbs(a, b) for a, b in ((one, other), (other, one))):
         return True
     if not ((one.takes and other.demands) or (other.takes and one.demands)):
         return False
+    if place not in known.single:
+        return True
     mine, its = accesses(net, t, place), accesses(net, u, place)
-    is_one_token = place in known.single and mine is not None and its is not None
-    return not (is_one_token and mine is not None and its is not None and commute(mine, its))
+    return mine is None or its is None or not commute(mine, its)
 
 
 def _disturbs(one: Use, other: Use) -> bool:

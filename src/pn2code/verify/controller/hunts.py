@@ -1,4 +1,4 @@
-"""Searches for a run that shows an answer, in a cell, or a net, of which not all states can be seen.
+"""Searches for a run that shows an answer, in a cell of which not all states can be seen.
 
     rows = hunt(properties, rows, lines, limits, options, explored)     # what was open in `rows` may be known now
 
@@ -59,9 +59,8 @@ def hunt(
     """
     found = list(rows)
     for i, (asked, row) in enumerate(zip(properties, rows, strict=True)):
-        is_fair = (
-            isinstance(asked, m.Linear) and asked.fair
-        )  # of a part it is not known what is fair
+        # Of a part it is not known what is fair.
+        is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
         if row["answer"] == "unknown" and not is_fair:
             own = replace(options, questions=lines + question(asked), stem=f"hunt-{i}", traces=None)
             said = _searched(limits, own, explored)
