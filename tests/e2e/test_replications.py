@@ -109,6 +109,26 @@ def test_logs_of_each_simulation(tmp_path: Path) -> None:
     assert logs == [f"output/sim_{i}/logfiles/Served.log" for i in (1, 2)]
 
 
+def test_where_the_files_of_each_simulation_are(tmp_path: Path) -> None:
+    """What is said of a file names the one that was written."""
+    folder = tmp_path / "files"
+    folder.mkdir()
+    functions = {
+        "Init": 'fun init () = "begin"',
+        "Predicate": "fun pred bindelem = true",
+        "Observer": 'fun obs bindelem = "x"',
+        "Stop": 'fun stop () = "end"',
+    }
+    writer = Spec("Told", "Write in file", ["Queue.Arrive"], functions)
+    net = made(tmp_path, QUEUE, writer)
+    said = json.loads(
+        simulated(net, "--replications", "2", "--files", str(folder), "--json").stdout
+    )
+    named = [m["file"] for s in said["simulations"] for m in s["monitors"]]
+    assert named == sorted(str(p.relative_to(folder)) for p in folder.rglob("Told*"))
+    assert len(named) == 2
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
