@@ -2,7 +2,7 @@
  * symbolic_formula.c - the reachable markings in which a formula holds.
  *
  * A path that ends in a dead marking is a path: EX is false there, and EG p is p. E[p U q] is what saturation backwards
- * from q finds within p; EG p loses the markings from which no transition leads to another one, until none is lost.
+ * from q finds within p; EG: symbolic_always.c.
  */
 #include "symbolic.h"
 
