@@ -12,6 +12,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.monitors import Spec, with_monitors
 from pn2code.cli.main import app
+from pn2code.simulate import programs
 from pn2code.simulate.confidence import critical_point
 
 QUEUE = """
@@ -68,6 +69,20 @@ def test_averages_of_single_runs(tmp_path: Path) -> None:
     assert served["statistics"]["sum"] == {
         "avg": 6.0, "half_90": 0.0, "half_95": 0.0, "half_99": 0.0, "std": 0.0, "min": 6, "max": 6,
     }  # fmt: skip
+
+
+@pytest.mark.cc
+def test_the_net_is_made_ready_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    net, made_ready, generated = made(tmp_path), [], programs.generated
+
+    def told(*args: Any) -> Any:
+        made_ready.append(args)
+        return generated(*args)
+
+    monkeypatch.setattr(programs, "generated", told)
+    said = simulated(net, "--engine", "compiled", "--replications", "3", "--json")
+    assert said.exit_code == 0 and len(made_ready) == 1
+    assert said.stdout == simulated(net, "--replications", "3", "--json").stdout
 
 
 def test_the_reports(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ from pn2code.cli.options import (
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.game.report import places
-from pn2code.simulate.choose import Wish, monitors_of
+from pn2code.simulate.choose import Ready, Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
 from pn2code.simulate.codes import TRACE_UNWRITABLE
 from pn2code.simulate.progress import ProgressLine
@@ -194,7 +194,8 @@ def simulate(
             interrupted=interrupts.is_wanted,
         )
         if replications is not None:
-            found = replicated(request, replications, partial(_another, engine, d, form))
+            another = partial(_another, engine, d, form, Ready(request))
+            found = replicated(request, replications, another)
             outcome = found.outcomes[-1]
         else:
             outcome = _made(request, engine, d, form)
@@ -223,10 +224,15 @@ def simulate(
 
 
 def _another(
-    engine: Engine | None, d: Diagnostics, form: Format, request: Request, number: int
+    engine: Engine | None,
+    d: Diagnostics,
+    form: Format,
+    ready: Ready,
+    request: Request,
+    number: int,
 ) -> Outcome:
     """One of several simulations; what is said of the first one is not repeated."""
-    return _made(request, engine, d if number == 1 else Diagnostics(), form)
+    return _made(request, engine, d if number == 1 else Diagnostics(), form, ready)
 
 
 def _check_trace(trace: Path | None, *read: Path | None) -> None:
@@ -273,11 +279,17 @@ def _check_writable(path: Path, code: str, what: str, form: Format) -> None:
         raise typer.Exit(Exit.USAGE)
 
 
-def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format) -> Outcome:
+def _made(
+    request: Request,
+    engine: Engine | None,
+    d: Diagnostics,
+    form: Format,
+    ready: Ready | None = None,
+) -> Outcome:
     """The run; leaves with a message when it cannot be made."""
     wish = Wish(engine.value) if engine is not None else Wish.ANY
     try:
-        outcome = play(request, wish, d)
+        outcome = play(request, wish, d, ready)
     except (TraceUnwritableError, TraceRefusedError, OSError) as problem:
         if isinstance(problem, TraceUnwritableError):
             d.error(TRACE_UNWRITABLE, str(problem), Origin(str(problem.path)))
