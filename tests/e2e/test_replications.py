@@ -12,6 +12,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.monitors import Spec, with_monitors
 from pn2code.cli.main import app
+from pn2code.simulate import programs
 from pn2code.simulate.confidence import critical_point
 
 QUEUE = """
@@ -70,6 +71,20 @@ def test_averages_of_single_runs(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+@pytest.mark.cc
+def test_the_net_is_made_ready_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    net, made_ready, generated = made(tmp_path), [], programs.generated
+
+    def told(*args: Any) -> Any:
+        made_ready.append(args)
+        return generated(*args)
+
+    monkeypatch.setattr(programs, "generated", told)
+    said = simulated(net, "--engine", "compiled", "--replications", "3", "--json")
+    assert said.exit_code == 0 and len(made_ready) == 1
+    assert said.stdout == simulated(net, "--replications", "3", "--json").stdout
+
+
 def test_the_reports(tmp_path: Path) -> None:
     net, page = made(tmp_path), tmp_path / "performance.html"
     result = simulated(net, "--replications", "2", "--report", str(page))
@@ -107,6 +122,26 @@ def test_logs_of_each_simulation(tmp_path: Path) -> None:
     simulated(made(tmp_path), "--replications", "2", "--files", str(folder))
     logs = sorted(str(p.relative_to(folder)) for p in folder.rglob("*.log"))
     assert logs == [f"output/sim_{i}/logfiles/Served.log" for i in (1, 2)]
+
+
+def test_where_the_files_of_each_simulation_are(tmp_path: Path) -> None:
+    """What is said of a file names the one that was written."""
+    folder = tmp_path / "files"
+    folder.mkdir()
+    functions = {
+        "Init": 'fun init () = "begin"',
+        "Predicate": "fun pred bindelem = true",
+        "Observer": 'fun obs bindelem = "x"',
+        "Stop": 'fun stop () = "end"',
+    }
+    writer = Spec("Told", "Write in file", ["Queue.Arrive"], functions)
+    net = made(tmp_path, QUEUE, writer)
+    said = json.loads(
+        simulated(net, "--replications", "2", "--files", str(folder), "--json").stdout
+    )
+    named = [m["file"] for s in said["simulations"] for m in s["monitors"]]
+    assert named == sorted(str(p.relative_to(folder)) for p in folder.rglob("Told*"))
+    assert len(named) == 2
 
 
 @pytest.mark.parametrize(

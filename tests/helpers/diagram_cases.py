@@ -103,9 +103,7 @@ def linear_formulas(c: Case, count: int) -> list[Formula]:
 
 def sizes(c: Case) -> Space:
     """Those of the graph."""
-    markings = c.graph.markings
-    tokens = max(map(max, markings)), max(map(sum, markings))
-    return Space(len(markings), c.graph.arcs, *tokens, None, "DECISION_DIAGRAMS")
+    return Space(*c.graph.sizes, None, "DECISION_DIAGRAMS")
 
 
 def difference(program: Path, c: Case, asked: list[str], wanted: dict[int, bool | int]) -> str:

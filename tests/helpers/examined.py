@@ -8,6 +8,7 @@ from pathlib import Path
 
 from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_condition
+from pn2code.contest.engine import Space
 from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
 from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
 from pn2code.contest.tables import Tables
@@ -42,10 +43,10 @@ def examined(
     return lines, expected
 
 
-def numbers(graph: Graph) -> tuple[int, int, int, int]:
-    """Markings, arcs, the most tokens in a place and in a marking."""
-    markings = graph.markings
-    return len(markings), graph.arcs, max(map(max, markings)), max(map(sum, markings))
+def sizes(found: Space | None) -> tuple[int, int, int, int]:
+    """What an engine says of the sizes of a graph, as `Graph.sizes` has them."""
+    assert found is not None
+    return found.states, found.arcs, found.tokens_in_place, found.tokens_in_marking
 
 
 def truths(graph: Graph) -> dict[str, bool]:

@@ -159,6 +159,12 @@ class Graph:
                 return None
         return Graph(tables, markings, successors, arcs)
 
+    @property
+    def sizes(self) -> tuple[int, int, int, int]:
+        """Markings, arcs, the most tokens in a place and in a marking."""
+        markings = self.markings
+        return len(markings), self.arcs, max(map(max, markings)), max(map(sum, markings))
+
     def where(self, f: Formula) -> set[int]:
         """The markings in which a formula of CTL holds. A path that ends in a dead marking is a path."""
         everywhere = set(range(len(self.markings)))

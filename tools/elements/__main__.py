@@ -20,16 +20,7 @@ from tools.elements.changes import changes
 from tools.elements.judge import Judge
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = (
-    "riveting",
-    "sorting",
-    "shared-zone",
-    "timed",
-    "palletiser",
-    "machining",
-    "welding",
-    "assembly",
-)
+EXAMPLES = sorted(p.parent.name for p in (ROOT / "examples").glob("*/cell.toml"))
 WHERE = ("refused", "program", "drawing", "check", "nowhere")
 
 

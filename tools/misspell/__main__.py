@@ -25,16 +25,7 @@ from tools.misspell.judge import Judge, Verdict
 from tools.misspell.mutants import mistakes
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = (
-    "riveting",
-    "sorting",
-    "shared-zone",
-    "timed",
-    "palletiser",
-    "machining",
-    "welding",
-    "assembly",
-)
+EXAMPLES = sorted(p.parent.name for p in (ROOT / "examples").glob("*/cell.toml"))
 RESULTS = ("refused", "no effect", "renamed", "option", "effect", "crash")
 
 

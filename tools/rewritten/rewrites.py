@@ -65,7 +65,7 @@ def single_arcs(root: Tree, r: Random) -> bool:
         back = copy.deepcopy(arc)
         arc.set("orientation", "PtoT")
         back.set("orientation", "TtoP")
-        _fresh(root, back)
+        _fresh(back)
         arc.addnext(back)
     return bool(found)
 
@@ -89,15 +89,15 @@ def fused(root: Tree, r: Random) -> bool:
         if place.find("fusioninfo") is not None or counts.get(str(page.get("id"))) != 1:
             continue
         twin = copy.deepcopy(place)
-        _fresh(root, twin)
+        _fresh(twin)
         _rename(twin, f"{_text(place)} again")
         place.addnext(twin)
         label = f"Both {name}"
         for member in (place, twin):
             info = etree.SubElement(member, "fusioninfo")
-            info.set("id", _new_id(root))
+            info.set("id", _new_id())
             info.set("name", label)
-        fusion = etree.Element("fusion", {"id": _new_id(root), "name": label})
+        fusion = etree.Element("fusion", {"id": _new_id(), "name": label})
         for member in (place, twin):
             etree.SubElement(fusion, "fusion_elm").set("idref", str(member.get("id")))
         _add_fusion(root, fusion)
@@ -124,22 +124,22 @@ def _hide(root: Tree, page: Tree, trans: Tree) -> bool:
     if not arcs or any(a.get("orientation") not in ("PtoT", "TtoP", "BOTHDIR") for a in arcs):
         return False
     places = {str(p.get("id")): p for p in page.iter("place")}
-    below = etree.Element("page", {"id": _new_id(root)})
+    below = etree.Element("page", {"id": _new_id()})
     etree.SubElement(below, "pageattr", {"name": f"Below{below.get('id')}"})
     inner = copy.deepcopy(trans)
-    _fresh(root, inner)
+    _fresh(inner)
     pairs = []
     ports: dict[str, Tree] = {}
     for arc in arcs:
         at = _end(arc, "placeend")
         if at not in ports:
             directions = {a.get("orientation") for a in arcs if _end(a, "placeend") == at}
-            ports[at] = _port(root, places[at], directions)
+            ports[at] = _port(places[at], directions)
             pairs.append(f"({ports[at].get('id')},{at})")
     moved = []
     for arc in arcs:
         mine = copy.deepcopy(arc)
-        _fresh(root, mine)
+        _fresh(mine)
         _set_end(mine, "transend", str(inner.get("id")))
         _set_end(mine, "placeend", str(ports[_end(arc, "placeend")].get("id")))
         moved.append(mine)
@@ -147,7 +147,7 @@ def _hide(root: Tree, page: Tree, trans: Tree) -> bool:
             text.text = ""
     below.extend([*ports.values(), inner, *moved])
     subst = etree.Element("subst", {"subpage": str(below.get("id")), "portsock": "".join(pairs)})
-    info = etree.SubElement(subst, "subpageinfo", {"id": _new_id(root), "name": "Below"})
+    info = etree.SubElement(subst, "subpageinfo", {"id": _new_id(), "name": "Below"})
     etree.SubElement(info, "posattr", {"x": "0.0", "y": "0.0"})
     for kind in ("cond", "time", "code", "priority"):
         for text in trans.iterfind(f"{kind}/text"):
@@ -156,7 +156,7 @@ def _hide(root: Tree, page: Tree, trans: Tree) -> bool:
     page.addnext(below)
     for instance in list(root.iter("instance")):
         if instance.get("page") == page.get("id") or _is_on(root, instance, page):
-            below_it = {"id": _new_id(root), "trans": str(trans.get("id"))}
+            below_it = {"id": _new_id(), "trans": str(trans.get("id"))}
             etree.SubElement(instance, "instance", below_it)
     return True
 
@@ -169,16 +169,16 @@ def _is_on(root: Tree, instance: Tree, page: Tree) -> bool:
     return subst is not None and subst.get("subpage") == page.get("id")
 
 
-def _port(root: Tree, place: Tree, directions: set[str | None]) -> Tree:
+def _port(place: Tree, directions: set[str | None]) -> Tree:
     port = copy.deepcopy(place)
-    _fresh(root, port)
+    _fresh(port)
     for tag in ("port", "fusioninfo"):
         for e in port.findall(tag):
             port.remove(e)
     for text in port.iterfind("initmark/text"):
         text.text = ""
     kind = {frozenset({"PtoT"}): "In", frozenset({"TtoP"}): "Out"}.get(frozenset(directions), "I/O")
-    etree.SubElement(port, "port", {"id": _new_id(root), "type": kind})
+    etree.SubElement(port, "port", {"id": _new_id(), "type": kind})
     return port
 
 
@@ -212,12 +212,10 @@ def constants(root: Tree, r: Random) -> bool:
         name = ((kind.text if kind is not None else None) or "").strip() or "UNIT"
         if not old or text is None or not re.fullmatch(r"\w+", name) or "@" in old:
             continue
-        ml = etree.SubElement(block, "ml", {"id": _new_id(root)})
+        if "`" not in old and not re.search(r"\bempty\b|\.all\b|\+\+|\^\^", old):
+            continue  # one token
+        ml = etree.SubElement(block, "ml", {"id": _new_id()})
         label = f"start{ml.get('id')}"
-        is_many = "`" in old or re.search(r"\bempty\b|\.all\b|\+\+|\^\^", old)
-        if not is_many:
-            block.remove(ml)
-            continue
         ml.text = f"val {label} = ({old}) : {name} ms;"
         text.text = label
         found = True
@@ -228,9 +226,9 @@ def dead_ends(root: Tree, r: Random) -> bool:
     """Pages have besides a transition that never occurs; not those that divide a net, which may be of no program."""
     dividing = {t.getparent() for t in _substitutions(root)}
     for page in [p for p in root.iter("page") if p not in dividing]:
-        trans = etree.SubElement(page, "trans", {"id": _new_id(root), "explicit": "false"})
+        trans = etree.SubElement(page, "trans", {"id": _new_id(), "explicit": "false"})
         etree.SubElement(trans, "text").text = f"Never {trans.get('id')}"
-        cond = etree.SubElement(trans, "cond", {"id": _new_id(root)})
+        cond = etree.SubElement(trans, "cond", {"id": _new_id()})
         etree.SubElement(cond, "text").text = "[1 = 2]"
     return True
 
@@ -294,12 +292,12 @@ def _add_fusion(root: Tree, fusion: Tree) -> None:
 _numbers = count(1)
 
 
-def _new_id(root: Tree) -> str:
+def _new_id() -> str:
     return f"ID88{next(_numbers):07d}"
 
 
-def _fresh(root: Tree, node: Tree) -> None:
+def _fresh(node: Tree) -> None:
     """New ids for a copy and all within it."""
     for e in node.iter():
         if isinstance(e.tag, str) and e.get("id"):
-            e.set("id", _new_id(root))
+            e.set("id", _new_id())

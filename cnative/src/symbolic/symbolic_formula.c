@@ -2,7 +2,7 @@
  * symbolic_formula.c - the reachable markings in which a formula holds.
  *
  * A path that ends in a dead marking is a path: EX is false there, and EG p is p. E[p U q] is what saturation backwards
- * from q finds within p; EG p loses the markings from which no transition leads to another one, until none is lost.
+ * from q finds within p; EG: symbolic_always.c.
  */
 #include "symbolic.h"
 
@@ -115,15 +115,27 @@ static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
     return other(d, sy_where_none(d, f->transition, f->count));
 }
 
+/* None of all transitions is enabled, or none of those that change nothing. */
+static sy_node_t where_none_of(sy_diagrams_t *d, bool is_of_idle)
+{
+    const size_t room = (size_t)d->net->transitions + 1U;
+    uint32_t *chosen = tb_new(room, sizeof *chosen);
+    uint32_t count = 0U;
+    for (uint32_t t = 0U; t < d->net->transitions; t++) {
+        if (!is_of_idle || (d->net->changes.first[t] == d->net->changes.first[t + 1U])) {
+            chosen[count] = t;
+            count++;
+        }
+    }
+    const sy_node_t found = sy_where_none(d, chosen, count);
+    tb_free(chosen, room, sizeof *chosen);
+    return found;
+}
+
 sy_node_t sy_where_dead(sy_diagrams_t *d)
 {
     if (d->dead == (sy_node_t)SY_ANY) {
-        uint32_t *all = tb_new((size_t)d->net->transitions + 1U, sizeof *all);
-        for (uint32_t t = 0U; t < d->net->transitions; t++) {
-            all[t] = t;
-        }
-        d->dead = sy_where_none(d, all, d->net->transitions);
-        tb_free(all, (size_t)d->net->transitions + 1U, sizeof *all);
+        d->dead = where_none_of(d, false);
     }
     return d->dead;
 }
@@ -131,16 +143,7 @@ sy_node_t sy_where_dead(sy_diagrams_t *d)
 static sy_node_t where_idle(sy_diagrams_t *d)
 {
     if (d->idle == (sy_node_t)SY_ANY) {
-        uint32_t *idle = tb_new((size_t)d->net->transitions + 1U, sizeof *idle);
-        uint32_t count = 0U;
-        for (uint32_t t = 0U; t < d->net->transitions; t++) {
-            if (d->net->changes.first[t] == d->net->changes.first[t + 1U]) {
-                idle[count] = t;
-                count++;
-            }
-        }
-        d->idle = other(d, sy_where_none(d, idle, count));
-        tb_free(idle, (size_t)d->net->transitions + 1U, sizeof *idle);
+        d->idle = other(d, where_none_of(d, true));
     }
     return d->idle;
 }

@@ -80,6 +80,22 @@ def port_option(help_text: str) -> Any:
     return typer.Option("--port", metavar="P", min=0, max=65535, help=help_text)
 
 
+PAGES = (".html", ".htm")
+"""Endings of pages."""
+
+
+def check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
+    """Refuses a file whose ending, which says the form of what is written, is none of these; None: there is none.
+
+    Raises:
+        typer.BadParameter: it has another one.
+    """
+    if path is not None and path.suffix.lower() not in kinds:
+        *others, last = (kind for kind in kinds if kind)
+        possible = f"{', '.join(others)} or {last}"
+        raise typer.BadParameter(f"`{path}` does not end in {possible}", param_hint=option)
+
+
 def check_writable(path: Path | None, option: str) -> None:
     """Refuses a file that could not be written in the end, before any work is done for it; None: there is none.
 

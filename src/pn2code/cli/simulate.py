@@ -12,12 +12,12 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.readable import readable
-from pn2code.base.whole_file import whole_file
 from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
+    PAGES,
     Engine,
     Exit,
     FilesOption,
@@ -27,15 +27,15 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    check_kind,
     parse_values,
     print_diagnostics,
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.net.flat import FlatNet
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.game.report import places
-from pn2code.simulate.choose import Wish, monitors_of
+from pn2code.simulate.choose import Ready, Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
 from pn2code.simulate.codes import TRACE_UNWRITABLE
 from pn2code.simulate.progress import ProgressLine
@@ -47,6 +47,7 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.trace.writing import TraceUnwritableError
 from pn2code.verdict.opened import OpenNet, as_traced
 from pn2code.verify.codes import REPORT_UNWRITABLE
+from pn2code.verify.report import writing
 from pn2code.verify.report.performance_page import of_one, of_several
 
 EPILOG = """Examples:
@@ -147,9 +148,10 @@ def simulate(
     The same seed gives the same run in both engines. Ctrl-C ends the run and prints the results so far.
     """
     if trace is not None and str(trace) != "-":
-        _check_writable(trace, form)
+        _check_writable(trace, TRACE_UNWRITABLE, f"the trace `{trace}`", form)
     if report is not None:
-        _check_report(report, form)
+        check_kind(report, PAGES, "--report")
+        _check_writable(report, REPORT_UNWRITABLE, f"`{report}`", form)
     if replications is not None and (trace is not None or replay is not None):
         raise typer.BadParameter(
             "a trace is of one run: leave one of them out",
@@ -192,7 +194,8 @@ def simulate(
             interrupted=interrupts.is_wanted,
         )
         if replications is not None:
-            found = replicated(request, replications, partial(_another, engine, d, form))
+            another = partial(_another, engine, d, form, Ready(request))
+            found = replicated(request, replications, another)
             outcome = found.outcomes[-1]
         else:
             outcome = _made(request, engine, d, form)
@@ -202,7 +205,8 @@ def simulate(
         d.error(TRACE_REFUSED, outcome.refusal, Origin(str(replay)))
     flat = opened.flat
     if report is not None:
-        _write_report(report, flat, outcome, found, d)
+        page = of_one(flat, outcome) if found is None else of_several(flat, found)
+        writing.write(report, page, d)
     if not as_json and not quiet:
         if found is None:
             typer.echo(text(flat, outcome, everything=everything))
@@ -220,35 +224,15 @@ def simulate(
 
 
 def _another(
-    engine: Engine | None, d: Diagnostics, form: Format, request: Request, number: int
+    engine: Engine | None,
+    d: Diagnostics,
+    form: Format,
+    ready: Ready,
+    request: Request,
+    number: int,
 ) -> Outcome:
     """One of several simulations; what is said of the first one is not repeated."""
-    return _made(request, engine, d if number == 1 else Diagnostics(), form)
-
-
-def _check_report(path: Path, form: Format) -> None:
-    """A report that cannot be written is told of before the run."""
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise typer.BadParameter(f"`{path}` does not end in .html or .htm", param_hint="--report")
-    why = why_file_unwritable(path)
-    if why:
-        d = Diagnostics()
-        d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {why}", Origin(str(path)))
-        print_diagnostics(d.sorted(), form)
-        raise typer.Exit(Exit.USAGE)
-
-
-def _write_report(
-    path: Path, net: FlatNet, outcome: Outcome, found: Replications | None, d: Diagnostics
-) -> None:
-    page = of_one(net, outcome) if found is None else of_several(net, found)
-    try:
-        with whole_file(path) as beside:
-            beside.write_text(page, encoding="utf-8")
-    except OSError as problem:
-        d.error(
-            REPORT_UNWRITABLE, f"cannot write `{path}`: {os_reason(problem)}", Origin(str(path))
-        )
+    return _made(request, engine, d if number == 1 else Diagnostics(), form, ready)
 
 
 def _check_trace(trace: Path | None, *read: Path | None) -> None:
@@ -285,20 +269,27 @@ def _time(until: str | None, opened: OpenNet) -> int | float | None:
     return int(digits) if digits.lstrip("+-").isdigit() else math.floor(value)
 
 
-def _check_writable(trace: Path, form: Format) -> None:
-    why = why_file_unwritable(trace)
+def _check_writable(path: Path, code: str, what: str, form: Format) -> None:
+    """What cannot be written is told of before the run."""
+    why = why_file_unwritable(path)
     if why:
         d = Diagnostics()
-        d.error(TRACE_UNWRITABLE, f"cannot write the trace `{trace}`: {why}", Origin(str(trace)))
+        d.error(code, f"cannot write {what}: {why}", Origin(str(path)))
         print_diagnostics(d.sorted(), form)
         raise typer.Exit(Exit.USAGE)
 
 
-def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format) -> Outcome:
+def _made(
+    request: Request,
+    engine: Engine | None,
+    d: Diagnostics,
+    form: Format,
+    ready: Ready | None = None,
+) -> Outcome:
     """The run; leaves with a message when it cannot be made."""
     wish = Wish(engine.value) if engine is not None else Wish.ANY
     try:
-        outcome = play(request, wish, d)
+        outcome = play(request, wish, d, ready)
     except (TraceUnwritableError, TraceRefusedError, OSError) as problem:
         if isinstance(problem, TraceUnwritableError):
             d.error(TRACE_UNWRITABLE, str(problem), Origin(str(problem.path)))

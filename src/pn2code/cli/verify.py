@@ -14,11 +14,11 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.os_reason import os_reason
-from pn2code.base.whole_file import whole_file
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
+    PAGES,
     Exit,
     Format,
     FormatOption,
@@ -26,6 +26,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    check_kind,
     check_writable,
     code_of,
     parse_values,
@@ -50,7 +51,7 @@ from pn2code.verdict.whole import (
     stem,
     trace_folder,
 )
-from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
+from pn2code.verify.codes import TIME_OVER
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import (
@@ -63,12 +64,12 @@ from pn2code.verify.exploring.limits import (
     cores,
 )
 from pn2code.verify.exploring.result import Exploration, Seen
+from pn2code.verify.report import writing
 from pn2code.verify.report.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.report.progress import ProgressLine
 from pn2code.verify.report.text import report
 from pn2code.verify.report.webpage import webpage
 
-_PAGES = (".html", ".htm")
 _TEXTS = (".txt", "")
 """Endings of reports; a name without one is that of a text, too."""
 EPILOG = """Examples:
@@ -285,9 +286,9 @@ def verify(
     cell.toml the checks of its supervisor count in the same way.
     """
     deadline = Deadline.of_command(max_seconds)
-    _check_kind(draw_to, GRAPH_KINDS, "--draw")
-    _check_kind(plot_to, PLOT_KINDS, "--plot")
-    _check_kind(report_to, (*_PAGES, *_TEXTS), "--report")
+    check_kind(draw_to, GRAPH_KINDS, "--draw")
+    check_kind(plot_to, PLOT_KINDS, "--plot")
+    check_kind(report_to, (*PAGES, *_TEXTS), "--report")
     d = Diagnostics()
     try:
         with deadline.enforced():
@@ -358,7 +359,7 @@ def verify(
             said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
         if report_to is not None:
             subject = None
-            if report_to.suffix.lower() in _PAGES:
+            if report_to.suffix.lower() in PAGES:
                 subject = Subject.of(
                     opened,
                     net,
@@ -452,14 +453,6 @@ def _folder(traces: Path | None, name: str, *, wanted: bool) -> Iterator[Path]:
         yield folder
 
 
-def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
-    """The ending of a name says the form of what is written."""
-    if path is not None and path.suffix.lower() not in kinds:
-        *others, last = (kind for kind in kinds if kind)
-        possible = f"{', '.join(others)} or {last}"
-        raise typer.BadParameter(f"`{path}` does not end in {possible}", param_hint=option)
-
-
 def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostics) -> None:
     """As a page, if there is a subject, or as a text."""
     now = datetime.now().astimezone()
@@ -482,10 +475,4 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
         if said.channel_model:
             body = f"{body.rstrip()}\n\n\n{channel_model.told(said.channel_model)}\n"
         body = f"{body.rstrip()}\n\n\n{closing(said)}\n"
-    try:
-        with whole_file(path) as beside:
-            beside.write_text(body, encoding="utf-8")
-    except OSError as problem:
-        d.error(
-            REPORT_UNWRITABLE, f"cannot write `{path}`: {os_reason(problem)}", Origin(str(path))
-        )
+    writing.write(path, body, d)

@@ -59,6 +59,7 @@ class _Reader:
     def __init__(self) -> None:
         self.place: dict[str, int] = {}
         self.transition: dict[str, int] = {}
+        self.used: set[str] = set()
         self.initial: list[int] = []
         self.arcs: list[tuple[str, str, int]] = []
         self.nets = 0
@@ -88,7 +89,7 @@ class _Reader:
             else:
                 arcs, p = post[transition[source]], place[target]
             arcs[p] = arcs.get(p, 0) + weight
-        if self.nets != 1 or self.pages > 1 or not place.keys().isdisjoint(transition):
+        if self.nets != 1 or self.pages > 1:
             raise _UnusualError
         found = Tables(
             tuple(self.initial),
@@ -160,6 +161,9 @@ class _Reader:
         """An arc of weight 1."""
         if "type" in attributes:
             raise _UnusualError
+        identity = attributes.get("id", "").strip()
+        if identity:  # nobody refers to arcs
+            self._use(identity)
         self.source = attributes["source"].strip()
         self.target = attributes["target"].strip()
         self.number = 1
@@ -187,12 +191,17 @@ class _Reader:
         else:
             raise _UnusualError
 
-    @staticmethod
-    def _new(known: dict[str, int], attributes: dict[str, str]) -> None:
+    def _new(self, known: dict[str, int], attributes: dict[str, str]) -> None:
         identity = attributes["id"].strip()
-        if not identity or identity in known:
+        if not identity:
             raise _UnusualError
+        self._use(identity)
         known[identity] = len(known)
+
+    def _use(self, identity: str) -> None:
+        if identity in self.used:
+            raise _UnusualError
+        self.used.add(identity)
 
 
 def _refuse(*_: object) -> int:

@@ -173,7 +173,7 @@ class Watch:
         for m in self.monitors:
             row = result_row(m.monitor, m.statistics)
             if m.kind is Kind.WRITE_IN_FILE:
-                row.update(file=_file(m.monitor), written=m.written)
+                row.update(file=self.folder.path(_file(m.monitor)), written=m.written)
             elif m.kind is Kind.USER_DEFINED:
                 row["calls"] = m.calls
             rows.append(row)
@@ -378,7 +378,7 @@ class Watch:
             reason = (said or str(problem)).lower()
             self.d.warning(
                 MONITOR_FILE,
-                f"monitor `{m.monitor.name}` cannot write `{name}`: {reason}",
+                f"monitor `{m.monitor.name}` cannot write `{self.folder.path(name)}`: {reason}",
                 m.monitor.origin,
                 hint="the simulation goes on without the file",
             )
@@ -399,11 +399,11 @@ def _member(m: _Running, name: str) -> Value:
 
 def _file(m: Monitor) -> str:
     extension = m.options.get("file extension", "").strip()
-    return f"output/{m.ml_name}.{extension}" if extension else f"output/{m.ml_name}"
+    return f"{m.ml_name}.{extension}" if extension else m.ml_name
 
 
 def _log(m: Monitor) -> str:
-    return f"output/logfiles/{m.ml_name}.log"
+    return f"logfiles/{m.ml_name}.log"
 
 
 def around(net: FlatNet, place: int) -> list[int]:

@@ -144,9 +144,7 @@ class _Reader:
             self.declarations.items.append(
                 RawColset("", _UNIT, "unit", (), (), (), False, (), False, "", origin)
             )
-        merged = len(pages) > 1 and any(
-            n.tag in ("referencePlace", "referenceTransition") for n in self.nodes.values()
-        )
+        merged = len(pages) > 1 and self.hang_together(pages)
         made: list[RawPage] = []
         title = readable(text_of(net.child("name"))) or net.get("id") or "Net"
         if merged:
@@ -278,6 +276,17 @@ class _Reader:
                 at = target
             else:
                 self.real[identity] = at.get("id")
+
+    def hang_together(self, pages: list[Node]) -> bool:
+        """Whether there are reference nodes, or arcs with an end on another page than their own."""
+        if any(n.tag in ("referencePlace", "referenceTransition") for n in self.nodes.values()):
+            return True
+        return any(
+            self.page_of.get(arc.get(end), page) is not page
+            for page in pages
+            for arc in self.arcs_by_page.get(id(page), ())
+            for end in ("source", "target")
+        )
 
     # --- pages -----------------------------------------------------------------------------------
 

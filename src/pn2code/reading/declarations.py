@@ -194,7 +194,7 @@ class DeclarationReader:
         if ml is not None and not name:
             self.no_name("the name of a reference", base)
             return None
-        if ml is None or not name:
+        if ml is None:
             return self.other(node)
         if name in RESERVED:
             self.check_name(name, base)

@@ -511,9 +511,7 @@ class StepTranslator:
 
     def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:
         """A value as traces write it: records with their fields in declared order."""
-        c = colset.resolved if colset is not None else None
-        while c is not None and c.kind is Kind.SUBSET and c.components[0] is not None:
-            c = c.components[0].resolved
+        c = colset.whole if colset is not None else None
         parts = dict(zip(c.labels, c.components, strict=True)) if c is not None and c.labels else {}
         match value:
             case Scalar(exp, tdl.Type.POSE):

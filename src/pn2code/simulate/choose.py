@@ -8,8 +8,10 @@ The compiled engine is used unless it cannot be: then, if nobody insists on it, 
 from __future__ import annotations
 
 from enum import Enum
+from functools import cached_property
 
 from pn2code.diagnostics import Diagnostics, Origin, Severity
+from pn2code.emission.output import OutputFile
 from pn2code.monitors.compiling import Instrumented
 from pn2code.monitors.functions import MonitorProgram, elaborate
 from pn2code.monitors.kinds import resolve
@@ -48,8 +50,47 @@ def monitors_of(examined: Examined, d: Diagnostics) -> MonitorProgram | None:
     return program if program.monitors else None
 
 
-def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
+class Ready:
+    """What is made of a net to compile it, for all of several runs that differ in their seeds: the net with its
+    monitors, its C, and how much room was enough so far.
+
+    Args:
+        request: one of the runs.
+    """
+
+    def __init__(self, request: Request) -> None:
+        self._request = request
+        self.room, self.memory = programs.ROOM, compiled.MEMORY
+        self.generated: dict[int, tuple[OutputFile, ...]] = {}
+        self.generated_instrumented: dict[int, tuple[OutputFile, ...]] = {}
+
+    @cached_property
+    def instrumented(self) -> Instrumented | None:
+        """The net with its monitors, where these can be compiled and nobody else has to watch.
+
+        A trace has the markings of the net, so with one the token game writes it.
+        """
+        request = self._request
+        program = request.monitors
+        if program is None or request.trace is not None or request.replay is not None:
+            return None
+        found = Instrumented.of(request.net, program, breakpoints=request.breakpoints)
+        if found is None:
+            return None
+        simple = Simple.of(program, request.net, breakpoints=request.breakpoints, own=found.places)
+        return found if simple is not None else None
+
+
+def simulate(
+    request: Request, wish: Wish, d: Diagnostics, ready: Ready | None = None
+) -> Outcome | None:
     """Makes the run; None after an error that was reported.
+
+    Args:
+        request: the run.
+        wish: which engine.
+        d: is told what is wrong.
+        ready: of another run, from which this one differs in its seed; None: there is none.
 
     Raises:
         TraceUnwritableError: the trace cannot be written.
@@ -70,7 +111,7 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
             return None
         return _instead(request, why, d)
     own = Diagnostics()
-    outcome, is_built = _compiled(request, own)
+    outcome, is_built = _compiled(request, own, ready or Ready(request))
     if is_built:
         d.items += own.items
         return outcome
@@ -81,14 +122,14 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
     return _instead(request, first, d)
 
 
-def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
+def _compiled(request: Request, d: Diagnostics, ready: Ready) -> tuple[Outcome | None, bool]:
     """The run, and whether there was a program for it. What proves to be too small is made larger, and the run anew."""
-    room, memory = programs.ROOM, compiled.MEMORY
-    instrumented = _instrumented(request)
+    instrumented = ready.instrumented
     while True:
         net = instrumented.net if instrumented else request.net
+        known = ready.generated_instrumented if instrumented else ready.generated
         own = Diagnostics() if instrumented else d
-        with programs.program(net, request.storage, own, room=room) as program:
+        with programs.program(net, request.storage, own, room=ready.room, known=known) as program:
             if program is None:
                 if instrumented is not None and own.has_errors:
                     instrumented = None  # the net can perhaps be compiled without its monitors
@@ -96,7 +137,7 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                 return None, False
             try:
                 outcome = compiled.run(
-                    request, program, d, memory=memory, instrumented=instrumented
+                    request, program, d, memory=ready.memory, instrumented=instrumented
                 )
                 if instrumented is not None and outcome is not None and outcome.why == "error":
                     instrumented = None  # a monitor's exception is told by who watches for it
@@ -105,10 +146,10 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                     d.items += own.items
                 return outcome, True
             except compiled.OutOfRoomError as full:
-                if full.limit == "room" and room < MOST_ROOM:
-                    room *= GROWTH
-                elif full.limit == "memory" and memory < MOST_MEMORY:
-                    memory *= GROWTH
+                if full.limit == "room" and ready.room < MOST_ROOM:
+                    ready.room *= GROWTH
+                elif full.limit == "memory" and ready.memory < MOST_MEMORY:
+                    ready.memory *= GROWTH
                 elif full.limit == "numbers":
                     d.error(
                         SIMULATOR_FAILED,
@@ -125,21 +166,6 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                         hint="simulate fewer steps: something in the net grows without end",
                     )
                     return None, True
-
-
-def _instrumented(request: Request) -> Instrumented | None:
-    """The net with its monitors, where these can be compiled and nobody else has to watch.
-
-    A trace has the markings of the net, so with one the token game writes it.
-    """
-    program = request.monitors
-    if program is None or request.trace is not None or request.replay is not None:
-        return None
-    found = Instrumented.of(request.net, program, breakpoints=request.breakpoints)
-    if found is None:
-        return None
-    simple = Simple.of(program, request.net, breakpoints=request.breakpoints, own=found.places)
-    return found if simple is not None else None
 
 
 def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:

@@ -30,7 +30,12 @@ PACKING = Packing({}, MOST_WIDTH, most_colours=2, successors=False)
 
 @contextmanager
 def program(
-    net: FlatNet, storage: Mapping[str, str], d: Diagnostics, *, room: int = ROOM
+    net: FlatNet,
+    storage: Mapping[str, str],
+    d: Diagnostics,
+    *,
+    room: int = ROOM,
+    known: dict[int, tuple[OutputFile, ...]] | None = None,
 ) -> Iterator[Path | None]:
     """The simulator of a net, as long as the block lasts; None after a diagnostic.
 
@@ -39,12 +44,16 @@ def program(
         storage: as for `Game`.
         d: gets the errors.
         room: different tokens that each place can hold.
+        known: room -> what has been generated of this net with it before; gets what is generated now.
     """
-    files = generated(net, storage, d, room)
-    if files is None:
-        yield None
-        return
-    with programs.program(HOST, files, d) as found:
+    known = {} if known is None else known
+    if room not in known:
+        files = generated(net, storage, d, room)
+        if files is None:
+            yield None
+            return
+        known[room] = files
+    with programs.program(HOST, known[room], d) as found:
         yield found
 
 

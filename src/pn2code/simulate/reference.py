@@ -63,7 +63,7 @@ class ReferenceRun:
         self._failure: Failure | None = None
         self._refusal = ""
         self._occurred: BindingElement | None = None
-        self._folder = Folder(Files(request.files), request.subfolder)
+        self._folder = Folder(Files(request.files), request.output)
 
     # --- a whole run -----------------------------------------------------------------------------
 

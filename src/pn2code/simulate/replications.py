@@ -14,6 +14,7 @@ from dataclasses import replace
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.monitors.folder import OUTPUT
 from pn2code.semantics.game.report import time_text
 from pn2code.simulate.confidence import LEVELS, Average
 from pn2code.simulate.run import DEFAULT_SEED, Outcome, Request
@@ -116,7 +117,7 @@ def replicated(
     seed = DEFAULT_SEED if request.seed is None else request.seed
     made: list[Outcome] = []
     for number in range(1, wanted + 1):
-        own = replace(request, seed=(seed + number - 1) % 2**64, subfolder=f"sim_{number}")
+        own = replace(request, seed=(seed + number - 1) % 2**64, output=f"{OUTPUT}/sim_{number}")
         made.append(play(own, number))
         if made[-1].why in ENDINGS:
             break

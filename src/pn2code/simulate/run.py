@@ -10,6 +10,7 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
+from pn2code.monitors.folder import OUTPUT
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import RUNTIME_ERROR
@@ -42,7 +43,7 @@ class Request:
         monitors: the monitors at work; None: none.
         breakpoints: whether breakpoints stop the run.
         files: the folder that the net may use.
-        subfolder: where the files of its monitors are put below `output` there; "": in `output`.
+        output: where the files of its monitors are put in that folder.
         progress: is told how the run goes on.
         interrupted: asked between steps: shall the run end?
     """
@@ -58,7 +59,7 @@ class Request:
     monitors: MonitorProgram | None = None
     breakpoints: bool = True
     files: Path | None = None
-    subfolder: str = ""
+    output: str = OUTPUT
     progress: Progress = lambda steps, time: None
     interrupted: Callable[[], bool] = lambda: False
 

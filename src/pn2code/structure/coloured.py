@@ -228,9 +228,7 @@ class _Search:
 
 
 def _component(c: Colset, step: Component) -> Colset | None:
-    c = c.resolved
-    while c.kind is Kind.SUBSET and c.components[0] is not None:
-        c = c.components[0].resolved
+    c = c.whole
     if c.kind is Kind.PRODUCT:
         return c.components[int(step.label) - 1]
     if c.kind is Kind.RECORD:

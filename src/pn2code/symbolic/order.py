@@ -38,12 +38,12 @@ def orders(places: int, pre: Arcs, post: Arcs) -> list[list[int]]:
     """
     if places == 0:
         return [[]]
-    even = _sorted(_Spans(places, pre, post))
-    narrow = _sorted(_Spans(places, pre, post, is_narrow=True))
+    touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
+    touched = [t for t in touched if len(t) > 1]
+    even = _sorted(_Spans(places, touched))
+    narrow = _sorted(_Spans(places, touched, is_narrow=True))
     found = [*narrow[:1], *even[:1], *narrow[1:2], *even[1:]]
-    different = {order.tobytes(): order for order in reversed(found)}
-    kept = dict.fromkeys(order.tobytes() for order in found)
-    return [different[key].tolist() for key in kept]
+    return [order.tolist() for order in {order.tobytes(): order for order in found}.values()]
 
 
 def _sorted(net: _Spans) -> list[Order]:
@@ -81,14 +81,14 @@ class _Spans:
 
     Args:
         places: how many there are.
-        pre, post: arcs of the transitions.
+        touched: transition -> its places, two or more.
         is_narrow: whether transitions count less, the more places they have.
     """
 
-    def __init__(self, places: int, pre: Arcs, post: Arcs, *, is_narrow: bool = False) -> None:
+    def __init__(
+        self, places: int, touched: Sequence[Sequence[int]], *, is_narrow: bool = False
+    ) -> None:
         self.places = places
-        touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
-        touched = [t for t in touched if len(t) > 1]
         self.sizes = np.array([len(t) for t in touched], dtype=np.int64)
         self.first = np.concatenate(([0], np.cumsum(self.sizes)))[:-1].astype(np.int64)
         self.place = np.array([p for t in touched for p in t], dtype=np.int64)

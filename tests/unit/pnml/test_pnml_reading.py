@@ -136,6 +136,21 @@ def test_reference_nodes_are_what_they_stand_for(tmp_path: Path) -> None:
     assert size(found) == (2, 2)
 
 
+@pytest.mark.parametrize(
+    ("on_the_other", "states"),
+    [(arc("q", "t", "1"), (1, 0)), (place("r", "", "1"), (2, 1))],
+    ids=["an arc", "a place"],
+)
+def test_arcs_from_page_to_page_count(
+    on_the_other: str, states: tuple[int, int], tmp_path: Path
+) -> None:
+    """Of an arc on another page than both its nodes, and of one with an end on another page."""
+    own = [place("p", "", "1"), place("q"), transition("t"), arc("p", "t", "1")]
+    own += [arc("r", "t", "1")] if "place" in on_the_other else []
+    text = net(*own).replace("</net>", f"<page id='two'>{on_the_other}</page></net>")
+    assert size(flat(text, tmp_path)) == states
+
+
 def test_pages_without_references_stay_pages(tmp_path: Path) -> None:
     text = net(place("p", "", "1"), transition("t"), arc("p", "t", "1"))
     other = "<page id='two'><name><text>Other</text></name>" + place("q", "", "1") + "</page>"

@@ -422,9 +422,7 @@ def _colsets(types: Types, pattern: core.Pat, colset: Colset | None) -> dict[int
         case core.PAs(symbol=symbol, pattern=inner):
             return {symbol.uid: types.colset(colset), **_colsets(types, inner, colset)}
         case core.PRecord(fields=fields):
-            own = colset.resolved
-            while own.kind is Kind.SUBSET and own.components[0] is not None:
-                own = own.components[0].resolved
+            own = colset.whole
             if own.kind not in (Kind.PRODUCT, Kind.RECORD):
                 return {}
             labels = own.labels or tuple(str(i) for i in range(1, len(own.components) + 1))

@@ -7,6 +7,7 @@ colour sets may share one ML type (`colset COORD = real; colset WEIGHT = real;`)
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -93,6 +94,13 @@ class Colset:
         while c.kind in (Kind.ALIAS, Kind.SUBSET) and c.components[0] is not None:
             c = c.components[0]
         return c
+
+    def tests(self) -> Iterator[Exp]:
+        """The expressions that say which values it has: its own, and those of its parts."""
+        yield from (test for test in (self.members, self.predicate) if test is not None)
+        for part in self.components:
+            if part is not None:
+                yield from part.tests()
 
 
 def definition(c: Colset) -> str:

@@ -6,10 +6,8 @@ priorities), and what it takes and puts depends on nothing at all. So both need 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
+from pn2code.net.reached import inscriptions
 from pn2code.semantics.evaluation.effects import Effects, effects_of
 
 
@@ -27,22 +25,6 @@ def _is_constant(net: FlatNet, t: FlatTransition, effects: Effects) -> bool:
     if any(a.kind in (ArcKind.INHIBITOR, ArcKind.RESET) or a.inscription is None for a in t.arcs):
         return False
     # The plan of a search has no texts but those of guards and arcs.
-    texts: list[object] = [*t.guards]
-    for arc in t.arcs:
-        assert arc.inscription is not None
-        texts.append(arc.inscription.value)
-        for term in arc.inscription.terms:
-            texts += [term.value, term.coefficient, term.delay]
-        texts.extend(_tests(net.places[arc.place].colset))
-    for symbol in t.variables:
-        if symbol.colset is not None:
-            texts.extend(_tests(symbol.colset))
-    return not effects.of(*texts)
-
-
-def _tests(c: Colset) -> Iterator[object]:
-    """The texts that say which values a colour set has."""
-    yield from (test for test in (c.members, c.predicate) if test is not None)
-    for part in c.components:
-        if part is not None:
-            yield from _tests(part)
+    colsets = [net.places[a.place].colset for a in t.arcs]
+    colsets += [s.colset for s in t.variables if s.colset is not None]
+    return not effects.of(*inscriptions(t), *(test for c in colsets for test in c.tests()))

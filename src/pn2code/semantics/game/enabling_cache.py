@@ -8,9 +8,8 @@ nothing is remembered.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
-from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.game.enabling import Enabling
@@ -124,15 +123,7 @@ def _examined(t: FlatTransition, effects: Effects) -> tuple[int, ...] | None:
                 texts += [term.value, term.coefficient, term.delay]
     for symbol in t.variables:
         if symbol.colset is not None:
-            texts.extend(_tests(symbol.colset))
+            texts.extend(symbol.colset.tests())
     if effects.of(*texts):
         return None
     return tuple(sorted({a.place for a in arcs}))
-
-
-def _tests(c: Colset) -> Iterator[object]:
-    """The texts that say which values a colour set has."""
-    yield from (test for test in (c.members, c.predicate) if test is not None)
-    for part in c.components:
-        if part is not None:
-            yield from _tests(part)

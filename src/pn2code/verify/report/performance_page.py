@@ -29,11 +29,9 @@ def of_one(net: FlatNet, outcome: Outcome) -> str:
         _collected("Untimed statistics", _UNTIMED, [r for r in rows if not r["timed"]]),
     ]
     time = f", model time {time_text(outcome.final.time)}" if net.timed and outcome.final else ""
-    return html.page(
-        "performance.html.j2",
-        ("report.css",),
-        title=f"{net.name}: simulation performance",
-        file=net.file,
+    return _page(
+        net,
+        title="simulation performance",
         head=f"{outcome.steps:,} steps{time}, seed {outcome.seed}",
         note="The values within one simulation may depend on each other, so nothing is said of confidence: "
         "simulate several times (--replications).",
@@ -57,15 +55,27 @@ def of_several(net: FlatNet, found: Replications) -> str:
         "head": ["", "Seed", "Steps", *(["Model time"] if net.timed else []), "Ended by"],
         "rows": [simulation(i, o, timed=net.timed) for i, o in enumerate(found.outcomes, 1)],
     }
-    return html.page(
-        "performance.html.j2",
-        ("report.css",),
-        title=f"{net.name}: performance",
-        file=net.file,
+    return _page(
+        net,
+        title="performance",
         head=f"{len(found.whole)} of {found.wanted} simulations",
         note="Each simulation gives one observation of each statistic. The mean lies within a half length of the "
         "average, with so many per cent.",
         tables=[*tables, made],
+    )
+
+
+def _page(
+    net: FlatNet, *, title: str, head: str, note: str, tables: Sequence[Mapping[str, Any]]
+) -> str:
+    return html.page(
+        "performance.html.j2",
+        ("report.css",),
+        title=f"{net.name}: {title}",
+        file=net.file,
+        head=head,
+        note=note,
+        tables=tables,
     )
 
 

@@ -15,13 +15,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
-from pn2code.verify.codes import GRAPH_NOT_DRAWN, REPORT_UNWRITABLE
+from pn2code.verify.codes import GRAPH_NOT_DRAWN
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.report.writing import unwritten
 
 GRAPH_KINDS = (".svg", ".html")
 PLOT_KINDS = (".svg", ".png")
@@ -96,11 +96,7 @@ class Pictures:
             try:
                 write(path, net, found, d)
             except OSError as problem:
-                d.error(
-                    REPORT_UNWRITABLE,
-                    f"cannot write `{path}`: {os_reason(problem)}",
-                    Origin(str(path)),
-                )
+                unwritten(path, problem, d)
 
     def _write_graph(self, path: Path, net: FlatNet, found: Exploration, d: Diagnostics) -> None:
         why, hint = self._why_no_picture(found)
