@@ -123,9 +123,9 @@ def test_a_finger_that_rests_lists_the_bindings(chromium: Any, tmp_path: Path) -
         browser.page.wait_for_selector("body[data-ready=true]")
         browser.ask("() => play.page.net.pin(1)")
         at = middle(browser, ".sheet .enabled rect")
-        Fingers(browser).hold(at)
         rows = browser.page.get_by_role("list", name="Enabled bindings").locator("li")
-        rows.first.wait_for()
+        with Fingers(browser).resting(at):
+            rows.first.wait_for()
         assert browser.ask("() => play.page.position.state.length") == 0, "it did not occur"
         rows.first.get_by_role("button").tap()
         browser.wait("play.page.position.state.length === 1")
