@@ -175,10 +175,11 @@ window.graphCanvas = function (svg, sheet, view) {
   return {
     canvas: canvas, under: under,
     boxOf: function (n) { return nodes[n] && nodes[n].box; },
+    // A node and its lines, which are drawn with the look at them that follows.
     mark: function (number, lines) {
       target = number;
       near = lines;
-      fresh();
+      keptView = null;
     },
     look: function () {
       if (asked) { return; }
