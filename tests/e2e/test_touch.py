@@ -101,6 +101,21 @@ class TestNet:
         )
 
 
+def test_keys_choose_after_a_finger_has_moved_the_page(browser: Page) -> None:
+    browser.ask("() => (replay.page.frame.pane('net'), replay.page.net.pin(1))")
+    x, y = middle(browser, "#net .sheet")
+    Fingers(browser).move(((x, y), (x + 20, y)))
+    browser.ask("() => void (replay.page.transition = -1)")
+    t = browser.ask("""() => {
+      const { net: { transitions }, current } = replay.page.net;
+      const t = transitions.findIndex((t) => t.instance === current);
+      document.querySelector(`#net [data-id='${transitions[t].id}']`).focus();
+      return t;
+    }""")
+    browser.page.keyboard.press("Enter")
+    assert browser.ask("() => replay.page.transition") == t
+
+
 def test_a_finger_takes_the_cursor_along(browser: Page) -> None:
     browser.ask("() => replay.page.frame.pane('timeline')")
     box = browser.page.locator("#timeline canvas").first.bounding_box()
