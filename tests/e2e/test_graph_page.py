@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from helpers import netbuilder
-from helpers.browser import PATIENCE_MS, launched, opened
+from helpers.browser import launched, opened
 from helpers.processes import pn2code
 from pn2code.verify.report import graph_svg
 from pn2code.verify.report.graph import read
@@ -38,16 +38,10 @@ def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def page(chromium: Any, file: Path) -> Iterator[Any]:
-    context = chromium.new_context(viewport={"width": 1280, "height": 720})
-    context.set_default_timeout(PATIENCE_MS)
-    page = context.new_page()
-    wrong: list[str] = []
-    page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
-    page.goto(file.as_uri())
-    yield page
-    context.close()
-    assert not wrong
+    with opened(chromium) as browser:
+        browser.page.goto(file.as_uri())
+        yield browser.page
+        assert browser.errors == []
 
 
 def view(page: Any) -> list[float]:
