@@ -74,7 +74,7 @@ window.graphCanvas = function (svg, sheet, view) {
   function whole(c, part, scale) {
     arcs.forEach(function (arc) {
       if (!isSeen(arc.box, part)) { return; }
-      var isNear = near && near.indexOf(arc.link) >= 0;
+      var isNear = near && near.has(arc.link);
       if (!arc.isLine && 8 * scale < 1.5) { return; }
       c.globalAlpha = near && !isNear ? 0.25 : 1;
       c.strokeStyle = c.fillStyle = isNear ? NEAR : arc.ink;
@@ -175,10 +175,11 @@ window.graphCanvas = function (svg, sheet, view) {
   return {
     canvas: canvas, under: under,
     boxOf: function (n) { return nodes[n] && nodes[n].box; },
+    // A node and its lines, which are drawn with the look at them that follows.
     mark: function (number, lines) {
       target = number;
-      near = lines;
-      fresh();
+      near = new Set(lines);
+      keptView = null;
     },
     look: function () {
       if (asked) { return; }

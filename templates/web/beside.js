@@ -32,7 +32,9 @@ export class Beside {
     this.course = new Course(run);
     const alike = differences.step ? differences.step.alike + 1 : Infinity;
     this.pacing = new Pacing(page.clock, this.course, run.end, alike);
-    this.placeOf = new Map(run.net.places.map((/** @type {any} */ p, /** @type {number} */ i) => [p.name, i]));
+    const numbers = (/** @type {any} */ net) => new Map(net.places.map((/** @type {any} */ p, /** @type {number} */ i) => [p.name, i]));
+    /** The places of both runs by their names. */
+    this.placeOf = [numbers(page.run.net), numbers(run.net)];
     this.net = new NetView(this.pane("net"), this.course, {
       onTransition: (t) => this.pacing.step(this.course.nextOf(t, this.pacing.k) || this.course.nextOf(t, this.pacing.k + 1, -1) || this.pacing.k),
       onPlace: () => {},
@@ -208,16 +210,10 @@ export class Beside {
     const told = [page.course.at, this.course.at, page.net.current, this.net.current].join(" ");
     if (told === this.told) return;
     this.told = told;
-    const first = page.course.net.places;
-    const other = (/** @type {string} */ name) => this.placeOf.get(name);
-    page.net.differ((p) => {
-      const q = other(first[p].name);
-      return q === undefined || page.course.text(p) !== this.course.text(q);
-    });
-    const index = this.firstOf ?? (this.firstOf = new Map(first.map((/** @type {any} */ p, /** @type {number} */ i) => [p.name, i])));
-    this.net.differ((q) => {
-      const p = index.get(this.run.net.places[q].name);
-      return p === undefined || page.course.text(p) !== this.course.text(q);
-    });
+    const [nets, courses] = [[page.net, this.net], [page.course, this.course]];
+    nets.forEach((net, i) => net.differ((p) => {
+      const q = this.placeOf[1 - i].get(courses[i].net.places[p].name);
+      return q === undefined || courses[i].text(p) !== courses[1 - i].text(q);
+    }));
   }
 }

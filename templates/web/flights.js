@@ -20,7 +20,7 @@ export class Flights {
     this.idle = [];
     /** @type {Set<Animation>} */
     this.ways = new Set();
-    /** Points of arcs, in the drawing, and how it lies on the screen. @type {WeakMap<any, DOMPoint[]>} */
+    /** Points of arcs, in the drawing. @type {WeakMap<any, DOMPoint[]>} */
     this.points = new WeakMap();
   }
 

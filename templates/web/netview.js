@@ -203,14 +203,16 @@ export class NetView {
       node.setAttribute("tabindex", "0");
       node.setAttribute("role", "button");
       node.classList.add("active");
-      node.onclick = () => {
-        if (this.window.moved) return;
+      const act = () => {
         if (t !== undefined) this.actions.onTransition(t);
         else if (p !== undefined) this.actions.onPlace(p);
         else this.enter(id, below);
       };
+      node.onclick = () => {
+        if (!this.window.moved) act();
+      };
       node.onkeydown = (/** @type {KeyboardEvent} */ e) => {
-        if (e.key === "Enter") node.onclick();
+        if (e.key === "Enter") act();
       };
     }
   }

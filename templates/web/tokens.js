@@ -27,29 +27,19 @@ export function bubble({ n, text, name }, at, hidden, style) {
   const box = { left: x - r, top: y - r, right: x + r, bottom: y + r };
   group.append(svg("title", { text: `${name}\n${shorten(text, 2000)}` }));
   if (!hidden) {
-    let lines = text.split("\n").map((line) => shorten(line, style.width));
-    if (lines.length > style.lines) {
-      lines = [...lines.slice(0, style.lines - 1), `… ${lines.length - style.lines + 1} more`];
-    }
-    const w = Math.max(...lines.map((line) => textWidth(line, style)));
-    const h = lines.length * style.line;
+    const { lines, w, h } = block(text.split("\n"), style.width, style.lines, style);
     const left = x + r + at[2];
-    const middle = y + at[3];
-    group.append(svg("rect", {
-      x: left, y: middle - h / 2 - 1, width: w + 6, height: h + 2, fill: style.tokenFill, "fill-opacity": 0.85,
-      stroke: style.tokenLine, "stroke-width": 0.75,
-    }));
-    const block = svg("text", { fill: "#000", "xml:space": "preserve" });
-    lines.forEach((line, i) => {
-      block.append(svg("tspan", {
-        x: left + 3, y: middle - h / 2 + style.line * (i + 0.5) + style.size * 0.35, text: line,
-      }));
-    });
-    group.append(block);
+    const top = y + at[3] - h / 2;
+    group.append(
+      svg("rect", {
+        x: left, y: top - 1, width: w + 6, height: h + 2, fill: style.tokenFill, "fill-opacity": 0.85,
+        stroke: style.tokenLine, "stroke-width": 0.75,
+      }),
+      svg("text", { fill: "#000", "xml:space": "preserve" }, ...spans(lines, left + 3, top, style)));
     box.left = Math.min(box.left, left);
     box.right = Math.max(box.right, left + w + 6);
-    box.top = Math.min(box.top, middle - h / 2 - 1);
-    box.bottom = Math.max(box.bottom, middle + h / 2 + 1);
+    box.top = Math.min(box.top, top - 1);
+    box.bottom = Math.max(box.bottom, top + h + 1);
   }
   group.append(
     svg("circle", { cx: x, cy: y, r, fill: style.tokenFill, stroke: style.tokenLine }),
@@ -66,18 +56,36 @@ export function bubble({ n, text, name }, at, hidden, style) {
  * @param {any} style
  */
 export function callout(said, box, full, style) {
-  let lines = said.map((line) => shorten(line, BINDING_WIDTH));
-  if (lines.length > BINDING_LINES) lines = [...lines.slice(0, BINDING_LINES - 1), `… ${lines.length - BINDING_LINES + 1} more`];
-  const w = Math.max(...lines.map((line) => textWidth(line, style))) + 10;
-  const h = lines.length * style.line + 6;
+  const shown = block(said, BINDING_WIDTH, BINDING_LINES, style);
+  const [w, h] = [shown.w + 10, shown.h + 6];
   const x = Math.min(Math.max(box.x + box.width / 2 - w / 2, full[0] + 2), full[0] + full[2] - w - 2);
   const isAbove = box.y + box.height + h + 8 > full[1] + full[3];
   const y = isAbove ? box.y - h - 7 : box.y + box.height + 7;
-  const text = svg("text", {});
-  lines.forEach((line, i) => {
-    text.append(svg("tspan", { x: x + 5, y: y + 3 + style.line * (i + 0.5) + style.size * 0.35, text: line }));
-  });
+  const text = svg("text", {}, ...spans(shown.lines, x + 5, y + 3, style));
   return svg("g", { class: "callout" }, svg("rect", { x, y, width: w, height: h, rx: 4 }), text);
+}
+
+/**
+ * Lines as far as they are shown, and the room that they take.
+ * @param {string[]} all
+ * @param {number} width characters of a line
+ * @param {number} most lines
+ * @param {any} style
+ */
+function block(all, width, most, style) {
+  let lines = all.map((line) => shorten(line, width));
+  if (lines.length > most) lines = [...lines.slice(0, most - 1), `… ${lines.length - most + 1} more`];
+  return { lines, w: Math.max(...lines.map((line) => textWidth(line, style))), h: lines.length * style.line };
+}
+
+/**
+ * @param {string[]} lines
+ * @param {number} x
+ * @param {number} top
+ * @param {any} style
+ */
+function spans(lines, x, top, style) {
+  return lines.map((text, i) => svg("tspan", { x, y: top + style.line * (i + 0.5) + style.size * 0.35, text }));
 }
 
 /** @type {CanvasRenderingContext2D | null} */

@@ -1,6 +1,8 @@
 // @ts-check
 /** Zones of the room: boxes that one sees through, with their names; the one in which something was too fast is lit. */
 
+import { place } from "./scene3d.js";
+
 const THREE = /** @type {any} */ (globalThis).THREE;
 
 /** Where people may be; where a sensor looks; where something was too fast. Colour-blind people can tell them, and each has words. */
@@ -28,12 +30,9 @@ export class Zones {
       const box = new THREE.BoxGeometry(...zone.size);
       const side = new THREE.MeshBasicMaterial({ transparent: true, side: THREE.DoubleSide, depthWrite: false });
       const edge = new THREE.LineBasicMaterial({});
-      const frame = new THREE.Matrix4();
-      frame.set(.../** @type {[any]} */ (zone.frame));
       const objects = [new THREE.Mesh(box, side), new THREE.LineSegments(new THREE.EdgesGeometry(box), edge)];
       for (const object of objects) {
-        object.matrixAutoUpdate = false;
-        object.matrix.copy(frame);
+        place(object, zone.frame);
         scene.add(object);
       }
       const top = new THREE.Box3().setFromObject(objects[0]);

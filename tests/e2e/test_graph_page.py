@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from helpers import netbuilder
-from helpers.browser import PATIENCE_MS, launched, opened
+from helpers.browser import launched, opened
 from helpers.processes import pn2code
 from pn2code.verify.report import graph_svg
 from pn2code.verify.report.graph import read
@@ -38,16 +38,10 @@ def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def page(chromium: Any, file: Path) -> Iterator[Any]:
-    context = chromium.new_context(viewport={"width": 1280, "height": 720})
-    context.set_default_timeout(PATIENCE_MS)
-    page = context.new_page()
-    wrong: list[str] = []
-    page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
-    page.goto(file.as_uri())
-    yield page
-    context.close()
-    assert not wrong
+    with opened(chromium) as browser:
+        browser.page.goto(file.as_uri())
+        yield browser.page
+        assert browser.errors == []
 
 
 def view(page: Any) -> list[float]:
@@ -88,7 +82,8 @@ def test_nodes_are_found_by_their_marking(page: Any) -> None:
     page.fill("#search", "waits: 1`ph(1)++ 1`ph(2)++ 1`ph(3)++ 1`ph(4)++ 1`ph(5)++ 1`ph(6)")
     assert page.locator("#results li").first.text_content() == "1 node"
     page.locator("#results a").click()
-    number = int(page.url.rsplit("-", 1)[1])
+    page.wait_for_selector(".sheet[data-node]")
+    number = int(page.evaluate("location.hash").rsplit("-", 1)[1])
     assert "dead" in page.locator(f"#node-{number}").get_attribute("class")
     page.fill("#search", "no such marking")
     assert page.locator("#results li").text_content() == "0 nodes"
@@ -112,7 +107,7 @@ def test_zooming_and_moving(page: Any) -> None:
     scale = whole[2] / page.locator(".sheet svg").bounding_box()["width"]
     moved = [a - b for a, b in zip(middle(page), before, strict=True)]
     assert moved == pytest.approx([100 * scale, 50 * scale], rel=0.05)
-    assert "#" not in page.url, "dragging is no click"
+    assert page.evaluate("location.hash") == "", "dragging is no click"
 
 
 def test_a_large_picture_is_on_a_canvas(

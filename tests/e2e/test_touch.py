@@ -101,6 +101,21 @@ class TestNet:
         )
 
 
+def test_keys_choose_after_a_finger_has_moved_the_page(browser: Page) -> None:
+    browser.ask("() => (replay.page.frame.pane('net'), replay.page.net.pin(1))")
+    x, y = middle(browser, "#net .sheet")
+    Fingers(browser).move(((x, y), (x + 20, y)))
+    browser.ask("() => void (replay.page.transition = -1)")
+    t = browser.ask("""() => {
+      const { net: { transitions }, current } = replay.page.net;
+      const t = transitions.findIndex((t) => t.instance === current);
+      document.querySelector(`#net [data-id='${transitions[t].id}']`).focus();
+      return t;
+    }""")
+    browser.page.keyboard.press("Enter")
+    assert browser.ask("() => replay.page.transition") == t
+
+
 def test_a_finger_takes_the_cursor_along(browser: Page) -> None:
     browser.ask("() => replay.page.frame.pane('timeline')")
     box = browser.page.locator("#timeline canvas").first.bounding_box()
@@ -123,9 +138,9 @@ def test_a_finger_that_rests_lists_the_bindings(chromium: Any, tmp_path: Path) -
         browser.page.wait_for_selector("body[data-ready=true]")
         browser.ask("() => play.page.net.pin(1)")
         at = middle(browser, ".sheet .enabled rect")
-        Fingers(browser).hold(at)
         rows = browser.page.get_by_role("list", name="Enabled bindings").locator("li")
-        rows.first.wait_for()
+        with Fingers(browser).resting(at):
+            rows.first.wait_for()
         assert browser.ask("() => play.page.position.state.length") == 0, "it did not occur"
         rows.first.get_by_role("button").tap()
         browser.wait("play.page.position.state.length === 1")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from helpers.browser import Page
 
 Point = tuple[float, float]
@@ -13,7 +16,6 @@ class Fingers:
     """What a person does with one finger or two."""
 
     def __init__(self, page: Page) -> None:
-        self._page = page.page
         self._session = page.page.context.new_cdp_session(page.page)
 
     def _say(self, kind: str, points: list[Point]) -> None:
@@ -31,8 +33,9 @@ class Fingers:
             )
         self._say("touchEnd", [])
 
-    def hold(self, at: Point, ms: int = 900) -> None:
-        """A finger rests, and is taken away."""
+    @contextmanager
+    def resting(self, at: Point) -> Iterator[None]:
+        """A finger rests as long as something is waited for, and is taken away."""
         self._say("touchStart", [at])
-        self._page.wait_for_timeout(ms)
+        yield
         self._say("touchEnd", [])

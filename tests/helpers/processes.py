@@ -8,6 +8,7 @@ It has its own arguments, exit code, signals and standard streams; killing it ki
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import importlib
 import os
@@ -47,6 +48,7 @@ class Child:
     @staticmethod
     def _become(body: Callable[[], int], stdout: int | None, stderr: int | None) -> None:
         code = 70
+        atexit._clear()  # what the tests' own process has to do at its end
         try:
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_DFL)
@@ -62,6 +64,7 @@ class Child:
         except BaseException:
             traceback.print_exc()
         finally:
+            atexit._run_exitfuncs()
             with suppress(OSError, ValueError):
                 sys.stdout.flush()
                 sys.stderr.flush()

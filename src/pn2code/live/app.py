@@ -22,7 +22,8 @@ from starlette.responses import HTMLResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from pn2code.live.hall import Hall, text_of
+from pn2code.base.page_json import page_json
+from pn2code.live.hall import Hall
 from pn2code.replay.served import Served
 
 MOST_PAGES = 64
@@ -138,7 +139,7 @@ class _Desk:
         """One page, from its first word to its last."""
         await socket.accept()
         if self._hall.pages >= MOST_PAGES:
-            await socket.send_text(text_of({"broken": "there are too many pages already"}))
+            await socket.send_text(page_json({"broken": "there are too many pages already"}))
             await socket.close()
             return
         self._hall.pages += 1
@@ -156,10 +157,10 @@ class _Desk:
         while True:
             rows, at = await self._hall.after(at)
             if not rows and self._hall.has_failed and not self._hall.is_over:
-                await socket.send_text(text_of({"failed": True}))
+                await socket.send_text(page_json({"failed": True}))
                 await self._hall.ended()
             if not rows:
-                await socket.send_text(text_of({"over": True}))
+                await socket.send_text(page_json({"over": True}))
                 await socket.close()
                 return
             await socket.send_text(
@@ -190,7 +191,7 @@ class _Desk:
                         answer = {"stop" if what == "stop" else "act": "wrong token"}
                     case _:
                         answer = {"stop": "what is not understood is not done"}
-                await socket.send_text(text_of(answer))
+                await socket.send_text(page_json(answer))
         finally:
             if has_joined:
                 self._acting.leave()

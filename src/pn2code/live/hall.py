@@ -12,9 +12,10 @@ where it is (an update that is `fresh`), and what came before is forgotten.
 from __future__ import annotations
 
 import asyncio
-import json
 import threading
 from typing import Any
+
+from pn2code.base.page_json import page_json
 
 Json = dict[str, Any]
 
@@ -52,7 +53,7 @@ class Hall:
 
     def tell(self, update: Json) -> bool:
         """One more update; whether the run must be told anew with the next one."""
-        text = text_of(update)
+        text = page_json(update)
         with self._lock:
             if update.get("fresh"):
                 self._forgotten += len(self._texts)
@@ -104,9 +105,3 @@ class Hall:
                 rows.append(text)
                 size += len(text)
             return rows, max(at, self._forgotten) + len(rows)
-
-
-def text_of(update: Any) -> str:
-    """JSON in which there is nothing that cannot be written."""
-    text = json.dumps(update, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return text.encode("utf-8", "replace").decode("utf-8")

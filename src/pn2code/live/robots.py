@@ -13,9 +13,9 @@ from pn2code.replay import cell as cells
 from pn2code.replay import happenings
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
+from pn2code.run.command_words import KINDS
 
 Json = dict[str, Any]
-_KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
 
 
 class Robots:
@@ -68,7 +68,7 @@ class Robots:
         return None
 
     def _bar(self, line: Json, party: int, start: float) -> Json:
-        if line["kind"] not in _KINDS:
+        if line["kind"] not in KINDS:
             raise ValueError(line["kind"])
         at = int(line["line"])
         transition = self._number.get(self._element(line["robot"], at), -1)

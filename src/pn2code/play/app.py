@@ -30,9 +30,10 @@ from starlette.responses import (
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from pn2code.base.page_json import page_json
 from pn2code.play import saving
 from pn2code.play.described import describe
-from pn2code.play.letters import Letters, text_of
+from pn2code.play.letters import Letters
 from pn2code.play.loading import Loaded
 from pn2code.play.page import page
 from pn2code.play.seats import MOST_WAITING, Full, Seat, Seats
@@ -107,7 +108,7 @@ class _Hall:
         letters = Letters(loop)
         seat.tell = tell = letters.put
         state = await loop.run_in_executor(seat.worker, seat.player.again)
-        await socket.send_text(text_of({"seat": seat.name, "new": is_new, "state": state}))
+        await socket.send_text(page_json({"seat": seat.name, "new": is_new, "state": state}))
         sending = asyncio.create_task(_send_all(socket, letters))
         over = asyncio.create_task(letters.over.wait())
         try:
@@ -223,7 +224,7 @@ class _Hall:
 
         done = await loop.run_in_executor(seat.worker, work)
         remove = BackgroundTask(file.unlink, missing_ok=True)
-        return Response(text_of(done), media_type="application/json", background=remove)
+        return Response(page_json(done), media_type="application/json", background=remove)
 
 
 async def _receive(stream: AsyncIterator[bytes], file: Path) -> bool:
@@ -248,7 +249,7 @@ async def _send_all(socket: WebSocket, letters: Letters) -> None:
 
 
 async def _part(socket: WebSocket, said: Json) -> None:
-    await socket.send_text(text_of(said))
+    await socket.send_text(page_json(said))
     await socket.close()
 
 

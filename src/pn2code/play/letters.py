@@ -9,9 +9,9 @@ await letters.over.wait()                # the page asks, and does not read: it 
 from __future__ import annotations
 
 import asyncio
-import json
 import threading
 
+from pn2code.base.page_json import page_json
 from pn2code.play.trouble import Json
 
 MOST_LETTERS = 10_000
@@ -39,7 +39,7 @@ class Letters:
 
     def put(self, said: Json) -> None:
         """One more."""
-        text = text_of(said)
+        text = page_json(said)
         with self._lock:
             if self._is_over:
                 return
@@ -59,9 +59,3 @@ class Letters:
             self._count -= 1
             self._characters -= len(text)
         return text
-
-
-def text_of(said: Json) -> str:
-    """As it is sent."""
-    text = json.dumps(said, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return text.encode("utf-8", "replace").decode("utf-8")

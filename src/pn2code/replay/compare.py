@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from pn2code.replay.arrays import Numbers, unpacked
 from pn2code.replay.description import Json
+
+Held = tuple[str, str, int]
+"""Of a token: text, stamp, and how many of it there are."""
 
 
 def first_difference(a: Json, b: Json) -> Json | None:
@@ -97,19 +102,20 @@ class _Steps:
         changes = self._course["changes"]
         offset = unpacked(changes["offset"]).astype(np.int64)[: most + 1]
         last = int(offset[-1]) if len(offset) else 0
-        own = np.array([number.setdefault(k, len(number)) for k in self._tokens()], np.int64)
+        own = np.array([number.setdefault(k, len(number)) for k in self._tokens], np.int64)
         token = own[unpacked(changes["token"])[:last]] if last else np.zeros(0, np.int64)
         count = unpacked(changes["count"])[:last].astype(np.int64)
         step = np.repeat(np.arange(len(offset) - 1), np.diff(offset))
         order = np.lexsort((count, token, step))
         return np.stack([step[order], token[order], count[order]], axis=1)
 
+    @cached_property
     def _tokens(self) -> list[tuple[str, str, str]]:
-        """All tokens: place, text, stamp."""
+        """All tokens: place, text, stamp (with `@`; without one, nothing)."""
         tokens = self._course["tokens"]
         rows = (unpacked(tokens[name]).tolist() for name in ("place", "text", "stamp"))
         return [
-            (self._places[p], self._texts[t], self._texts[s - 1] if s else "")
+            (self._places[p], self._texts[t], f"@{self._texts[s - 1]}" if s else "")
             for p, t, s in zip(*rows, strict=True)
         ]
 
@@ -129,26 +135,11 @@ class _Steps:
 
     def other_changes(self, other: _Steps, step: int) -> list[str]:
         """What a step takes and puts in each run, of the first place where that differs."""
-        sides = [run._changed_at(step) for run in (self, other)]
-        for place in dict.fromkeys((*sides[0], *sides[1])):
-            texts = [side.get(place, []) for side in sides]
-            if texts[0] != texts[1]:
-                return [f"{place} changes by {', '.join(held) or 'nothing'}" for held in texts]
-        return ["", ""]
-
-    def _changed_at(self, step: int) -> dict[str, list[str]]:
-        changes, tokens = self._course["changes"], self._tokens()
-        first, last = unpacked(changes["offset"])[step : step + 2].tolist()
-        out: dict[str, list[str]] = {}
-        rows = zip(
-            unpacked(changes["token"])[first:last].tolist(),
-            unpacked(changes["count"])[first:last].tolist(),
-            strict=True,
-        )
-        for token, n in rows:
-            place, text, stamp = tokens[token]
-            out.setdefault(place, []).append(f"{n:+d}`{text}{f'@{stamp}' if stamp else ''}")
-        return {place: sorted(held) for place, held in out.items()}
+        found = _first_other(*(run._by_place("changes", step) for run in (self, other)))
+        assert found is not None, "another change is one of some place"
+        place, sides = found
+        texts = [sorted(f"{n:+d}`{text}{stamp}" for text, stamp, n in held) for held in sides]
+        return [f"{place} changes by {', '.join(held) or 'nothing'}" for held in texts]
 
     def binding(self, step: int) -> list[str]:
         """The values of the variables, as texts."""
@@ -173,32 +164,36 @@ class _Steps:
 
     def other_start(self, other: _Steps) -> list[str] | None:
         """What the first place holds that holds something else at the beginning; None: there is none."""
-        mine, theirs = self._start(), other._start()
-        for place in dict.fromkeys((*mine, *theirs)):
-            if mine.get(place) != theirs.get(place):
-                return [_held(place, start.get(place, [])) for start in (mine, theirs)]
-        return None
+        found = _first_other(*(run._by_place("keys", 0) for run in (self, other)))
+        if found is None:
+            return None
+        place, sides = found
+        texts = [[f"{n}`{text}{stamp}" for text, stamp, n in held] for held in sides]
+        return [
+            f"{place} holds {' ++ '.join(held) or 'nothing'} at the beginning" for held in texts
+        ]
 
-    def _start(self) -> dict[str, list[tuple[str, str, int]]]:
-        """The initial marking by place: text, stamp and number of its tokens."""
-        course = self._course
-        keys, tokens = course["keys"], course["tokens"]
-        last = int(unpacked(keys["offset"])[1])
-        place, text, stamp = (unpacked(tokens[name]) for name in ("place", "text", "stamp"))
-        rows = zip(
-            unpacked(keys["token"])[:last].tolist(),
-            unpacked(keys["count"])[:last].tolist(),
+    def _by_place(self, rows: str, at: int) -> dict[str, list[Held]]:
+        """The tokens of a row of `changes` (what a step takes and puts) or `keys` (what all places hold), by place."""
+        part = self._course[rows]
+        first, last = unpacked(part["offset"])[at : at + 2].tolist()
+        found: dict[str, list[Held]] = {}
+        for token, n in zip(
+            unpacked(part["token"])[first:last].tolist(),
+            unpacked(part["count"])[first:last].tolist(),
             strict=True,
-        )
-        out: dict[str, list[tuple[str, str, int]]] = {}
-        for i, n in rows:
-            at = self._texts[int(stamp[i]) - 1] if stamp[i] else ""
-            out.setdefault(self._places[int(place[i])], []).append(
-                (self._texts[int(text[i])], at, n)
-            )
-        return {name: sorted(held) for name, held in out.items()}
+        ):
+            place, text, stamp = self._tokens[token]
+            found.setdefault(place, []).append((text, stamp, n))
+        return {place: sorted(held) for place, held in found.items()}
 
 
-def _held(place: str, tokens: list[tuple[str, str, int]]) -> str:
-    texts = [f"{n}`{text}{f'@{stamp}' if stamp else ''}" for text, stamp, n in tokens]
-    return f"{place} holds {' ++ '.join(texts) or 'nothing'} at the beginning"
+def _first_other(
+    one: dict[str, list[Held]], two: dict[str, list[Held]]
+) -> tuple[str, tuple[list[Held], list[Held]]] | None:
+    """The first place that has not the same in both, and what it has."""
+    for place in dict.fromkeys((*one, *two)):
+        sides = one.get(place, []), two.get(place, [])
+        if sides[0] != sides[1]:
+            return place, sides
+    return None

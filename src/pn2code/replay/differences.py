@@ -20,6 +20,7 @@ from pn2code.replay.compare import first_difference, is_cut
 from pn2code.replay.course import LONGEST
 from pn2code.replay.description import Json
 from pn2code.replay.motion import interpolated
+from pn2code.robot.transforms import rotation_about
 
 APART_M = 5e-4
 """The TCP, or an axis that slides, stands elsewhere from here on."""
@@ -27,6 +28,7 @@ APART_RAD = 1e-3
 """So does a joint."""
 
 
+_Arms = dict[str, "_Arm"]
 _PARTS = {"step": "steps", "message": "messages", "pose": "poses", "end": "end"}
 
 
@@ -40,10 +42,11 @@ def differences(a: Json, b: Json) -> Json:
     shared = min(a["course"]["steps"], b["course"]["steps"])
     if step is not None:
         shared = step["alike"]
+    arms = _arms(a), _arms(b)
     compared = ["step"]
     if a.get("happenings") and b.get("happenings"):
         compared.append("message")
-    if _arms(a).keys() & _arms(b).keys():
+    if arms[0].keys() & arms[1].keys():
         compared.append("pose")
     if not any(is_cut(run) or run["course"].get("refused") for run in (a, b)):
         compared.append("end")
@@ -52,11 +55,11 @@ def differences(a: Json, b: Json) -> Json:
     return {
         "step": step,
         "message": _first_message(a, b),
-        "pose": _first_pose(a, b, shared),
+        "pose": _first_pose(a, b, arms, shared) if "pose" in compared else None,
         "end": _other_end(a, b) if "end" in compared else None,
         "compared": compared,
         "same": f"both runs have the same {what}",
-        "notes": list(_notes(a, b)),
+        "notes": list(_notes(a, b, arms)),
     }
 
 
@@ -79,12 +82,11 @@ def _short(text: str) -> str:
     return plain if len(text) <= LONGEST else f"{plain}… ({len(text) - LONGEST:,} more characters)"
 
 
-def _notes(a: Json, b: Json) -> Iterator[str]:
+def _notes(a: Json, b: Json, arms: tuple[_Arms, _Arms]) -> Iterator[str]:
     for word, run in (("first", a), ("second", b)):
         if is_cut(run):
             n = run["course"]["steps"]
             yield f"steps of the {word} run after the first {n:,} are left out, and not compared"
-    arms = [_arms(run) for run in (a, b)]
     if all(arms):
         for name in sorted(arms[0].keys() ^ arms[1].keys()):
             yield f"only one of the runs has the arm {name}"
@@ -162,11 +164,8 @@ def _by_channel(run: Json) -> dict[str, list[tuple[float, str]]] | None:
 # --- poses ---------------------------------------------------------------------------------------
 
 
-def _first_pose(a: Json, b: Json, shared: int) -> Json | None:
+def _first_pose(a: Json, b: Json, arms: tuple[_Arms, _Arms], shared: int) -> Json | None:
     """The first of the shared steps at which the arm whose program makes it stands elsewhere."""
-    arms = [_arms(run) for run in (a, b)]
-    if not (arms[0] and arms[1]):
-        return None
     times = [unpacked(run["course"]["time"]) for run in (a, b)]
     parties = a["happenings"]["parties"]
     owners = a["happenings"]["owners"]
@@ -187,7 +186,7 @@ def _first_pose(a: Json, b: Json, shared: int) -> Json | None:
     return None
 
 
-def _arms(run: Json) -> dict[str, _Arm]:
+def _arms(run: Json) -> _Arms:
     cell, motion = run.get("cell"), run.get("motion")
     if not cell or not motion or not run.get("happenings"):
         return {}
@@ -232,9 +231,8 @@ def _moved(axis: Numbers, by: float, slides: bool) -> Numbers:
     out = np.eye(4)
     if slides:
         out[:3, 3] = axis * by
-        return out
-    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    out[:3, :3] += np.sin(by) * cross + (1.0 - np.cos(by)) * cross @ cross
+    else:
+        out[:3, :3] = rotation_about(axis, by)
     return out
 
 

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import re
 from typing import Any
 
 import pn2code
 from pn2code.base import resources
+from pn2code.base.page_json import page_json
 from pn2code.drawing.text import escape
 from pn2code.replay import three
 from pn2code.replay.bundle import bundle, modules
@@ -72,8 +72,7 @@ def page(
 
 def embedded(data: Any) -> str:
     """JSON that is safe inside a `script` element: nothing in it can end the element or begin a comment."""
-    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    text = text.encode("utf-8", "replace").decode("utf-8")  # lone surrogates cannot be written
+    text = page_json(data)
     for character in "<>&\u2028\u2029":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return text

@@ -19,6 +19,7 @@ from pn2code.replay.description import VERSION, Json
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.lines import is_number
 from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
@@ -182,7 +183,7 @@ class _Lines:
 def _moment(line: Mapping[str, Any]) -> float:
     """The time of a line; 0 where it has none, or one that no axis has."""
     t = line.get("t")
-    if isinstance(t, bool) or not isinstance(t, int | float):
+    if not is_number(t):
         return 0.0
     try:
         return float(t) if math.isfinite(t) else 0.0

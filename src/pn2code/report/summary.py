@@ -15,6 +15,7 @@ from rich.text import Text
 from pn2code.cell.config import ReportConfig
 from pn2code.report.activities import activities, busy_seconds
 from pn2code.robot.kinematics import condition_text
+from pn2code.run.command_words import KINDS
 from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
 MOST_PARTS = 12
@@ -22,7 +23,6 @@ MOST_PARTS = 12
 MOST_BY_HAND = 12
 MOST_NUMBERS = 12
 """in one line"""
-KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
 
 
 def summarise(

@@ -22,9 +22,11 @@ from pn2code.robot.commands import (
     Wait,
 )
 
+KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
+
 
 def kind_and_label(command: Command) -> tuple[str, str]:
-    """What a command is, and what a chart writes: the tool action, or the kind."""
+    """What a command is (one of `KINDS`), and what a chart writes: the tool action, or the kind."""
     match command:
         case MoveJoint():
             return "joint", "joint"

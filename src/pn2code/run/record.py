@@ -28,7 +28,7 @@ class ActionRecord:
 
     Args:
         robot: its name.
-        kind: "joint", "home", "linear", "tool", "measure", "wait".
+        kind: one of `command_words.KINDS`.
         label: what a chart writes: the tool action, or the kind.
         start, end: seconds.
         line: line of the script.

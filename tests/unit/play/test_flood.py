@@ -10,12 +10,15 @@ from typing import Any
 
 import pytest
 
+from helpers.played import PATIENCE_S
 from pn2code.play import app, letters
 from pn2code.trace.json_text import is_deep
 
 
 class Deaf:
     """A page that says nonsense for ever, and hears its first message only."""
+
+    seat: Any
 
     def __init__(self) -> None:
         self.said = self.heard = 0
@@ -36,17 +39,23 @@ class Deaf:
         self.closed = code
 
 
+def meet(page: Deaf) -> None:
+    """The page comes, and is there until it is parted from."""
+    with ThreadPoolExecutor(1) as worker:
+        player = SimpleNamespace(again=dict)
+        page.seat = SimpleNamespace(player=player, worker=worker, name="seat")
+        hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
+        there = hall._at(page, page.seat, True)  # type: ignore[arg-type]
+        asyncio.run(asyncio.wait_for(there, PATIENCE_S))
+
+
 @pytest.mark.parametrize(("name", "most"), [("MOST_LETTERS", 50), ("MOST_CHARACTERS", 3000)])
 def test_a_page_that_does_not_read_is_parted_from(
     monkeypatch: pytest.MonkeyPatch, name: str, most: int
 ) -> None:
     monkeypatch.setattr(letters, name, most)
     page = Deaf()
-    with ThreadPoolExecutor(1) as worker:
-        player = SimpleNamespace(again=dict)
-        seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
-        hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
-        asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]
+    meet(page)
     assert page.closed == 1008 and page.said < 100
 
 
@@ -59,7 +68,7 @@ def test_what_was_read_does_not_count() -> None:
         assert not page.over.is_set()
         for _ in range(40):
             page.put({"text": "x" * (letters.MOST_CHARACTERS // 20)})
-        await page.over.wait()
+        await asyncio.wait_for(page.over.wait(), PATIENCE_S)
         return page._waiting.qsize()
 
     assert asyncio.run(spoken()) < 20
@@ -70,18 +79,14 @@ def test_a_page_that_only_waits_is_parted_from_as_well(monkeypatch: pytest.Monke
         async def receive_text(self) -> str:
             self.said += 1
             if self.said > 1:
-                seat.tell({"text": "x" * 5000})  # alone it may be long
-                seat.tell({"text": "x"})
+                self.seat.tell({"text": "x" * 5000})  # alone it may be long
+                self.seat.tell({"text": "x"})
                 await asyncio.Event().wait()
             return "nonsense"
 
     monkeypatch.setattr(letters, "MOST_CHARACTERS", 3000)
     page = Silent()
-    with ThreadPoolExecutor(1) as worker:
-        player = SimpleNamespace(again=dict)
-        seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
-        hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
-        asyncio.run(hall._at(page, seat, True))  # type: ignore[arg-type]
+    meet(page)
     assert page.closed == 1008
 
 
