@@ -250,17 +250,17 @@ def test_a_net_alone_has_no_seconds(tmp_path: Path) -> None:
     assert done.exit_code == 1 and "the net has no time" in done.stderr
 
 
-def test_time_stamps_are_not_followed(tmp_path: Path) -> None:
-    """A watchdog of the net itself: nothing is said in seconds."""
+def test_time_stamps_are_followed(tmp_path: Path) -> None:
+    """A pause of the net itself, before the end."""
     text = NET.replace("AGAIN", "n + 1").replace(
         "colset VERDICT", "colset TUNIT = unit timed;\n  colset VERDICT"
     )
     text = text.replace("    place Done2\n", "    place Done2 : TUNIT\n")
-    text = text.replace("      out Done2 : ()", "      out Done2 : ()@+1")
+    text = text.replace("      out Done2 : ()", "      out Done2 : ()@+3")
     cell = write(tmp_path)
     (cell / "cell.cpn").write_bytes(cpn(text))
-    (said,) = verified(cell, END.format(9))["properties"]
-    assert said["answer"] == "inconclusive" and "time stamps" in said["why"]
+    yes, no = verified(cell, END.format(7), END.format(5))["properties"]
+    assert (yes["answer"], yes["value"], no["answer"]) == ("yes", 6.001, "no")
 
 
 def test_a_false_wait_would_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
