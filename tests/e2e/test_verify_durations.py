@@ -18,6 +18,7 @@ from pn2code import division
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.emission import c as emit_c
+from pn2code.geometry import graph
 from pn2code.net.front import load
 from pn2code.properties.meaning import Atom, Property, Response
 from pn2code.timing import verified as seconds
@@ -41,8 +42,10 @@ def verified(folder: Path, *texts: str, options: tuple[str, ...] = ("--durations
     return json.loads(done.stdout)
 
 
-def test_no_program_is_generated_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Who measures commands takes the program of those who checked the supervisor, and the division of the cell."""
+def test_nothing_is_generated_or_explored_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who measures commands takes the graph that those saw who checked the supervisor, and the division of the cell."""
     emit, divide = emit_c.emit, division.divide
     generated: list[str] = []
     divisions: list[str] = []
@@ -58,6 +61,7 @@ def test_no_program_is_generated_twice(tmp_path: Path, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(emit_c, "emit", emitted)
     monkeypatch.setattr(division, "divide", divided)
+    monkeypatch.setattr(graph, "explore", lambda *_: pytest.fail("explored again"))
     assert verified(write(tmp_path))["durations"]["layouts"]
     assert len(generated) == len(set(generated)) == 2
     assert len(divisions) == 1

@@ -32,14 +32,14 @@ from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
-from pn2code.verify.controller.control_types import CellProgram
+from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Generated, Sizes
 
-MOST_STATES = 300_000
+MOST_STATES = MOST_WRITTEN
 """States of a cell that are looked at."""
 CLOCK = -1
 """The owner of steps of the clock."""
@@ -171,6 +171,11 @@ def explore_cell(
     if program is None:
         program = CellProgram(Running.of(partition), (), Generated())
     running, made = program.running, program.generated
+    written = program.graph
+    if written is not None and written.nodes <= (limits.max_states or MOST_STATES):
+        graph = _read(partition, storage, running, _rows(written.file), "")
+        if (len(graph.arcs), sum(map(len, graph.arcs))) == (written.nodes, written.arcs):
+            return graph
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
     limits = replace(
         limits,
