@@ -276,7 +276,7 @@ def test_an_order_that_does_not_matter(
 
 def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
     verdict = judge(
-        120002, tmp_path, mutants=False, wants_medium=False, is_shop=True, only_verdicts=True
+        120002, tmp_path, mutants=False, wants_medium=False, family="shops", only_verdicts=True
     )
     assert verdict.wrong == ()
     reached = ("checks with limits", "properties that hold with limits", "closed nets counted")
