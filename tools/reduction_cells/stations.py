@@ -10,7 +10,7 @@ from random import Random
 
 from tools.bench import families
 
-SMALL = {"ring": (2, 3), "zones": (2, 3), "line": (1, 2), "retries": (1, 1)}
+SMALL = {"ring": (2, 3), "zones": (2, 3), "line": (1, 2), "pallets": (2, 2), "retries": (1, 1)}
 """By family, how many robots."""
 
 
