@@ -289,6 +289,25 @@ def test_an_order_that_does_not_matter_where_there_is_enough_for_all(
         assert found["cell"]["reduced"] and found["cell"]["bounds"] is None
 
 
+def test_a_cell_of_which_only_the_orders_are_too_many_is_counted_for_these(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has 115 states, and more if the supervisor may fire in any order."""
+    monkeypatch.setattr(command, "COUNTS_FROM", 130)
+    net, toml = families.net("zones", 3, 3), families.toml("zones", 3)
+    found = verified(tmp_path / "found", net, toml=toml)
+    whole = verified(tmp_path / "whole", net, "--no-reduction", toml=toml)
+    assert answers(found) == answers(whole)
+    assert found["cell"] == whole["cell"]
+    counted = {
+        c["check"]: "stands for many markings" in str(c["assumes"]) for c in found["controller"]
+    }
+    assert [check for check, is_so in counted.items() if is_so] == [
+        "finite-response",
+        "bounded-response",
+    ]
+
+
 def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
     verdict = judge(
         120002, tmp_path, mutants=False, wants_medium=False, family="shops", only_verdicts=True

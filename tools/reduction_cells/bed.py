@@ -306,8 +306,10 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
 def _of_checks(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
     first = r.choice(FEW)
     found = cell.checked(MOST, first)
-    counted = found if found is not None and found.is_counted else None
-    counts["checks with limits"] += counted is not None
+    is_less = found is not None and (found.is_counted or found.reduced_orders)
+    counted = found if is_less else None
+    counts["checks with limits"] += found is not None and found.is_counted
+    counts["orders with limits, or in turns"] += found is not None and found.reduced_orders
     reduced = cell.checked(1)
     if reduced is None or not reduced.reduced or reduced.found is None:
         counts["checks of the whole"] += 1
