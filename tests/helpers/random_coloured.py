@@ -27,14 +27,16 @@ SORTS: dict[str, Enum | Range | Product | Partition] = {
     "C": Enum(("c0", "c1", "c2")),
     "D": Enum(("d0", "d1"), cyclic=False),
     "N": Range(2, 4),
+    "L": Range(1, 2),
     "K": Partition("C", {"low": ("c0",), "high": ("c1", "c2")}),
     "CD": Product(("C", "D")),
     "NC": Product(("N", "C")),
     "CC": Product(("C", "C")),
     "DKD": Product(("D", "K", "D")),
+    "LN": Product(("L", "N")),
 }
-SIMPLE = ("C", "D", "N", "K")
-VARIABLES = {"x": "C", "y": "C", "d": "D", "e": "D", "n": "N", "m": "N", "k": "K"}
+SIMPLE = ("C", "D", "N", "K", "L")
+VARIABLES = {"x": "C", "y": "C", "d": "D", "e": "D", "n": "N", "m": "N", "k": "K", "l": "L"}
 
 
 def random_coloured(draw: random.Random) -> ColouredNet:
@@ -81,7 +83,7 @@ class _Made:
     def many(self, sort: str) -> Term:
         """A multi-set, mostly of one token."""
         kind = self.draw.randrange(12)
-        if kind == 0 and sort not in ("NC", "CC", "CD", "DKD"):
+        if kind == 0 and sort not in ("NC", "CC", "CD", "DKD", "LN"):
             return all_(sort)
         if kind == 1:
             return times(2, self.one(sort))
@@ -118,7 +120,7 @@ class _Made:
             case Enum(values=values):
                 return self.draw.choice(values)
             case Range(low=low, high=high):
-                return self.draw.randint(low, high)
+                return ("number", sort, self.draw.randint(low, high))
             case Partition(classes=classes):
                 return self.draw.choice(sorted(classes))
             case Product(parts=parts):
@@ -127,13 +129,13 @@ class _Made:
     def guard(self, depth: int) -> Term:
         kind = self.draw.randrange(7 if depth else 4)
         if kind == 0:
-            sort = self.draw.choice(("CD", "CC", "NC", "DKD"))
+            sort = self.draw.choice(("CD", "CC", "NC", "DKD", "LN"))
             return self.draw.choice((eq, ne))(self.one(sort), self.one(sort))
         if kind == 1:
             sort = self.draw.choice(SIMPLE)
             return self.draw.choice((eq, ne))(self.one(sort), self.one(sort))
         if kind < 4:
-            sort = self.draw.choice(("C", "D", "N"))
+            sort = self.draw.choice(("C", "D", "N", "L"))
             names = ("lessthan", "lessthanorequal", "greaterthan", "greaterthanorequal")
             return (self.draw.choice(names), self.one(sort), self.one(sort))
         if kind == 4:
