@@ -214,6 +214,14 @@ SUMMANDS_SHARE = register(
     "binding sequence found`. If the shared variable gets its value from another arc or a guard, the arc is accepted, "
     "and so is 1`(a, b) ++ 1`(b, a), whose second summand has no variable of its own.",
 )
+BINDING_CIRCLE = register(
+    "binding-circle",
+    "variables need each other's values",
+    "CPN Tools tries all values of a variable only where nothing could give it one. In the guard [c = d] each side "
+    "could give the other its value, so that neither is tried, and it reports `No complete binding sequence found` "
+    "unless one of them has a value from an input arc or another guard. The same happens for [c = next c], and for a "
+    "variable that is in a pattern and in its own coefficient: (size c)`c.",
+)
 ARCS_SHARE = register(
     "arcs-share-variables",
     "CPN Tools cannot bring together the variables of two arcs from one place",
