@@ -178,7 +178,7 @@ class Tap:
 
     def _part(self, entry: PartRecord) -> Json:
         change = entry.change
-        state: Json = {"t": entry.t, **cells.put(self._cell, change)}
+        state: Json = {"t": entry.t, **cells.put(self._cell, change, entry.robot)}
         tcp = self._tcp(entry.robot)
         if change.effect == "takes" and tcp is not None:
             state["frame"] = cells.frame(inverse(tcp) @ matrix_of(change.pose))

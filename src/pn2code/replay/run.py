@@ -74,7 +74,7 @@ def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Jso
     states = {name: [state] for name, state in cell.at_start(robot_cell).items()}
     for entry in record.parts:
         change = entry.change
-        state: Json = {"t": entry.t, **cell.put(robot_cell, change)}
+        state: Json = {"t": entry.t, **cell.put(robot_cell, change, entry.robot)}
         if change.effect == "takes" and entry.robot in arms:
             arm = robot_cell.robot(entry.robot)
             tcp = arm.T_world_base @ arm.kinematics.forward(motion.at(entry.robot, entry.t))

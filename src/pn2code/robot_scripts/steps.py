@@ -25,6 +25,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
+from pn2code.robot.commands import CHANGES
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership, moves, unread
 from pn2code.robot_scripts.assignments import one_after_the_other
@@ -321,10 +322,11 @@ class StepTranslator:
         if (
             self.machine.owner.kind is OwnerKind.DEVICE
             and handling
-            and handling.effect in ("takes", "releases")
+            and handling.effect not in ("creates", "removes")
         ):
+            what = "a tool" if handling.effect in CHANGES else "a part"
             raise UnsupportedError(
-                f"`{name}` {handling.effect} a part, but device `{self.machine.owner.name}` has no arm",
+                f"`{name}` {handling.effect} {what}, but device `{self.machine.owner.name}` has no arm",
                 span,
                 codes.PRIMITIVE,
             )
