@@ -8,12 +8,14 @@ the joints. Nothing here depends on what happens in a run.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pn2code.replay.meshes import Meshes
+from pn2code.robot.commands import CHANGES
 from pn2code.robot.geometry import bodies, body_of
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import PartChange, Parts
@@ -22,6 +24,7 @@ from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
+from pn2code.run.record import PartRecord
 
 Json = dict[str, Any]
 
@@ -85,6 +88,15 @@ def put(cell: RobotCell, change: PartChange, robot: str = "") -> Json:
         return {"frame": frame(np.eye(4)), "holder": robot}
     on = None if change.on_plate is None else matrix_of(change.on_plate)
     return standing(cell, matrix_of(change.pose), change.plate, on)
+
+
+def tool_in_use(robot: CellRobot, entries: Iterable[PartRecord], t: float) -> str:
+    """Which of the tools that it changes a robot has in use at a time of a run; "": none."""
+    tool = robot.begins_with
+    for entry in entries:
+        if entry.robot == robot.name and entry.t <= t and entry.change.effect in CHANGES:
+            tool = entry.change.part if entry.change.effect == "couples" else ""
+    return tool
 
 
 def _robot(robot: CellRobot, store: Meshes) -> Json:

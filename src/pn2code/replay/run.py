@@ -112,7 +112,9 @@ def _marks(
     for action in record.actions:
         if action.kind == "tool" and action.label in labels and action.robot in arms:
             arm = arms[action.robot]
-            tcp = arm.T_world_base @ arm.kinematics.forward(motion.at(action.robot, action.end))
+            tool = cell.tool_in_use(arm, record.parts, action.end)
+            own = arm.kinematics.forward(motion.at(action.robot, action.end))
+            tcp = arm.T_world_base @ arm.of_tool(tool, own)
             rows.append(
                 {
                     "t": action.end,

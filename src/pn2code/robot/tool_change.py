@@ -45,7 +45,7 @@ def why_not_coupled(
     if off := _off(kind, tool.frame, coupling, slack):
         other = lying_at(parts.values(), coupling, kind.tolerance)
         here = f"; `{other.name}` lies here" if other is not None else ""
-        return f"{does}, which lies {off} away{here}, {at}"
+        return f"{does}, which lies {off}{here}, {at}"
     return ""
 
 
@@ -65,7 +65,7 @@ def why_not_uncoupled(
     if held is not None:
         return f"{does}, which still holds `{held.name}`, {at}"
     if off := _off(kind, rack, coupling, slack):
-        return f"{does}, but its place `{kind.rack}` is {off} away, {at}"
+        return f"{does}, but its place `{kind.rack}` is {off}, {at}"
     other_tool = lying_at(parts.values(), rack, kind.tolerance)
     if other_tool is not None:
         return f"{does}, but tool `{other_tool.name}` lies at its place `{kind.rack}`, {at}"
@@ -80,4 +80,4 @@ def _off(kind: ToolKind, wanted: Array, coupling: Array, slack: float) -> str:
     off = f"{1000.0 * way:.1f} mm"
     off += f" and {math.degrees(turn):.1f} deg" if turn > kind.angle else ""
     most = f"{1000.0 * kind.tolerance:g} mm, {math.degrees(kind.angle):g} deg"
-    return f"{off} (at most {most})"
+    return f"{off} away (at most {most})"
