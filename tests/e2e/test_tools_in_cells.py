@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from e2e.test_check_geometry import looked
+from helpers.full_cell import merged, skeleton
+from helpers.netbuilder import cpn
 from helpers.situations_of import situations
 from helpers.tool_cell import TOML, asking, net, tool_cell
 from pn2code.cli.main import app
@@ -15,6 +18,7 @@ from pn2code.conform.cell import ProgramComparison
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
+from unit.cell.test_cookbook import RECIPES
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -181,3 +185,26 @@ def test_a_tool_that_lies_there_is_in_the_way(tmp_path: Path) -> None:
     found = looked(cell, tmp_path / "runs")
     assert (found.of_moves, found.of_pairs) == ("yes", "no")
     assert any("`arm/driver` and `gripper` overlap" in p.says for p in found.pairs)
+
+
+def recipe(folder: Path) -> Path:
+    """The cell of docs/cookbook.md."""
+    (found,) = [r for r in RECIPES if r.title == "A robot that changes its tool"]
+    folder.mkdir()
+    (folder / "cell.cpn").write_bytes(cpn(found.net))
+    (folder / "cell.toml").write_text(merged(skeleton(), tomllib.loads(found.toml)))
+    return folder
+
+
+def test_the_recipe_runs(tmp_path: Path) -> None:
+    """It changes the tool where a job needs another one, and only there."""
+    seen = run(recipe(tmp_path / "cell"), tmp_path / "run")
+    assert seen.record.verdict == "finished", seen.record.reason
+    done = [(p.change.effect, p.change.part) for p in seen.record.parts]
+    assert done == [
+        ("couples", "gripper"),
+        ("takes", "blank.1"),
+        ("releases", "blank.1"),
+        ("uncouples", "gripper"),
+        ("couples", "punch"),
+    ]

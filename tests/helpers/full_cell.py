@@ -266,6 +266,7 @@ scale = 0.5
 [tools.hand]
 model = "counterpoint"
 rack = "shelf"
+holders = ["table"]
 takes = ["box"]
 does = ["grip"]
 tolerance = 0.003
@@ -337,14 +338,14 @@ fair = ["weak all"]
 about = "net"
 """)
 
-_ARMS = ("tools", "parts", "places", "frames", "robots", "devices")
+_ARMS = ("tools", "parts", "places", "frames", "robots", "devices", "scene")
 _NEEDED = {
     "primitives": _ARMS,
     "sensors": ("parts", "places", "robots", "devices"),
     "report": ("channel", "primitives", *_ARMS),
     "devices": ("places",),
-    "frames": ("robots", "parts", "tools", "places"),
-    "robots": ("parts", "tools", "places"),
+    "frames": ("robots", "parts", "tools", "places", "scene"),
+    "robots": ("parts", "tools", "places", "scene"),
     "scene": ("robots", "parts", "tools", "places"),
     "tools": _ARMS,
     "layouts": tuple(FULL),
@@ -428,7 +429,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
             (r.kinematics.arm_angle, r.carries, tuple(r.tools), r.begins_with) for r in cell.robots
         ]
         shown += [
-            (x.name, x.tool.name, x.rack, x.takes, x.does, x.tolerance, x.angle)
+            (x.name, x.tool.name, x.rack, x.holders, x.takes, x.does, x.tolerance, x.angle)
             for x in cell.tools.values()
         ]
         shown += [a.described() for r in cell.moving for a in r.axes]

@@ -119,6 +119,7 @@ driveIt = { command = "tool", action = "drive", duration_s = 2.0 }
 [tools.gripper]
 model = "vacuum_gripper"
 rack = "rackLeft"
+holders = ["rack"]
 takes = ["blank"]
 
 [tools.driver]

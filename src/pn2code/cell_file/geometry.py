@@ -639,6 +639,11 @@ TOOL = Section(
             "where it is from the start, on a robot.",
             "the name of a place of `[places]`",
         ),
+        Key(
+            "holders",
+            "texts",
+            "What holds it there, names of `[scene] objects`: it may touch these when it comes and leaves (to 1 mm).",
+        ),
         Key("takes", "texts", "The kinds of parts that it can grip, names of `[parts]`."),
         Key(
             "does",

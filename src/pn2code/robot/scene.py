@@ -337,7 +337,8 @@ def _scene(
     objects = read_solids(t.tables("objects"), folder, solid=bool(kinds))
     plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
     contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
-    contacts += coupling(robots, tools, [o.name for o in objects])
+    contacts += coupling(robots, tools)
+    _expect_holders(t, tools, objects)
     _named_once(
         t, objects, {**dict.fromkeys(kinds, "kind of parts"), **dict.fromkeys(tools, "tool")}
     )
@@ -361,6 +362,22 @@ def _scene(
     )
     t.done()
     return out
+
+
+def _expect_holders(
+    t: Table, tools: Mapping[str, ToolKind], objects: tuple[SceneObject, ...]
+) -> None:
+    """What holds tools is among the objects of the scene."""
+    known = [o.name for o in objects]
+    for name, kind in tools.items():
+        for holder in kind.holders:
+            if holder not in known:
+                t.d.error(
+                    codes.ROBOT_VALUE,
+                    f"`tools.{name}.holders` names `{holder}`, which is no object of the scene",
+                    t.at(),
+                    hint=did_you_mean(holder, known, "it names `[scene] objects`"),
+                )
 
 
 def _contact(t: Table, things: list[str]) -> ContactRule:

@@ -14,10 +14,8 @@ from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, ContactRule
 from pn2code.robot.tools_table import ToolKind
 
 
-def coupling(
-    robots: Sequence[CellRobot], tools: Mapping[str, ToolKind], things: Sequence[str]
-) -> Iterator[ContactRule]:
-    """What a coupling touches lying tools with, what tools touch where they lie, and contact links what they grip."""
+def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iterator[ContactRule]:
+    """What couplings touch lying tools with, tools what holds them there, and contact links what they grip."""
     for robot in robots:
         ends = [f"{robot.name}/{link}" for link in _end(robot)] if robot.tools else ()
         for name, kind in robot.tools.items():
@@ -25,7 +23,7 @@ def coupling(
                 yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
             held = f"{robot.name}/{name}"
             gripped = [f"{k}.*" for k in kind.takes] if kind.tool.contact_links else []
-            for other in (*things, *gripped):
+            for other in (*kind.holders, *gripped):
                 yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
 
 

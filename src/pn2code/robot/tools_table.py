@@ -37,6 +37,7 @@ class ToolKind:
     Args:
         tool: its tree, and its TCP in the frame of its root, which is what is coupled.
         rack: where it lies, a name of `[places]`; "": nowhere.
+        holders: what holds it there, which it may touch.
         takes: the kinds of parts that it grips; does: the actions for which it, or another one, is needed.
         tolerance: how far the coupling may be from the tool, m; angle: how far it may be turned, rad.
     """
@@ -48,6 +49,7 @@ class ToolKind:
     does: tuple[str, ...]
     tolerance: float
     angle: float
+    holders: tuple[str, ...] = ()
 
     @property
     def mass(self) -> float:
@@ -85,7 +87,7 @@ def read_tools(
         rack = table.text("rack")
         if rack and rack not in places:
             table.wrong("rack", "the name of a place of `[places]`", did_you_mean(rack, places))
-        takes, does = table.texts("takes"), table.texts("does")
+        takes, does, holders = (table.texts(key) for key in ("takes", "does", "holders"))
         for one in takes:
             if one not in kinds:
                 some = ", ".join(f"`{n}`" for n in kinds) or "there is none"
@@ -94,7 +96,7 @@ def read_tools(
         tolerance, angle = table.number("tolerance"), math.radians(table.number("angle_deg"))
         table.done()
         if tool is not None:
-            out[name] = ToolKind(name, tool, rack, takes, does, tolerance, angle)
+            out[name] = ToolKind(name, tool, rack, takes, does, tolerance, angle, holders)
     return out
 
 

@@ -261,6 +261,7 @@ def test_contacts_that_are_permitted(cell: RobotCell) -> None:
     rules = {(r.a, r.b) for r in cell.scene.contacts}
     assert ("arm/link_6", "gripper") in rules and ("arm/link_6", "gripper.*") in rules
     assert ("arm/gripper", "rack") in rules and ("arm/gripper", "blank.*") in rules
+    assert ("arm/driver", "rack") not in rules and ("arm/gripper", "stand") not in rules
     assert ("arm/driver", "blank.*") not in rules and ("arm/link_5", "gripper") not in rules
 
 
@@ -273,6 +274,7 @@ def test_contacts_that_are_permitted(cell: RobotCell) -> None:
         ('rack = "rackLeft"', 'rack = "rackLft"', "`tools.gripper.rack`"),
         ('rack = "rackRight"', 'rack = "rackLeft"', "tools `gripper` and `driver` are both at place `rackLeft`"),
         ('rack = "rackRight"\n', "", "no robot begins with tool `driver`, and it has no place"),
+        ('holders = ["rack"]', 'holders = ["rck"]', "`tools.gripper.holders` names `rck`"),
         ('takes = ["blank"]', 'takes = ["blnk"]', "`tools.gripper.takes` names `blnk`"),
         ('"gripper", "driver"]', '"gripper", "drver"]', "`robots.arm.tools` names `drver`, which is no tool"),
         ("tools = [", 'begins_with = "x"\ntools = [', "`robots.arm.begins_with`"),
