@@ -487,7 +487,7 @@ def _handling(
     for effect in given[1:]:
         r.d.error(
             codes.CELL_VALUE,
-            f"an action that `{given[0]}` something cannot be one that `{effect}` something, too",
+            f"an action that `{given[0]}` {_what(given[0])} cannot be one that `{effect}` {_what(effect)}, too",
             r.at(*at, effect),
             hint="make two functions of it, which the net calls one after the other",
         )
@@ -507,6 +507,10 @@ def _handling(
     for name, key, section in ((part, given[0], whose), (place, "at", "places")):
         expect_named(r, data, name, (*at, key), section)
     return Handling(given[0], part, place)
+
+
+def _what(effect: Effect) -> str:
+    return "a tool" if effect in CHANGES else "a part"
 
 
 _NEEDS: dict[Effect, tuple[Effect, str]] = {

@@ -147,6 +147,11 @@ class Handling:
     part: str
     place: str = ""
 
+    @property
+    def is_of_tool(self) -> bool:
+        """Whether it is a tool that is coupled or left, no part."""
+        return self.effect in CHANGES
+
     def __str__(self) -> str:
         """As in a script."""
         return f"{self.effect} {self.part}" + (f" at {self.place}" if self.place else "")

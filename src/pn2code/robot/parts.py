@@ -199,6 +199,11 @@ class Parts:
             for p in self._work()
         ]
 
+    def _grip(self, robot: str, tcp: Array) -> Array:
+        """`T_world_tcp` of the tool that a robot has in use, with its own, the coupling, at `tcp`."""
+        tool = self.tool_of(robot)
+        return self.cell.robot(robot).of_tool(tool, tcp) if tool else tcp
+
     def riders(self, plate: str) -> list[Part]:
         """What turns with a turntable."""
         return [p for p in self.present.values() if p.plate == plate]
@@ -355,7 +360,7 @@ class Parts:
                 f"`{robot}` takes a part `{kind.name}`, but its tool holds `{held.name}` already"
             )
         standing = [p for p in self.present.values() if p.kind is kind and not p.holder]
-        grip = self.cell.robot(robot).of_tool(self.tool_of(robot), tcp)
+        grip = self._grip(robot, tcp)
         at = f"at TCP pose {describe(pose_of(grip))}"
         if not standing:
             raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
@@ -395,7 +400,7 @@ class Parts:
         held = self.held_by(robot)
         if held is None or held.kind is not kind:
             what = f"`{held.name}`" if held else "nothing"
-            grip = self.cell.robot(robot).of_tool(self.tool_of(robot), tcp)
+            grip = self._grip(robot, tcp)
             raise PartFault(
                 f"`{robot}` releases a part `{kind.name}`, but its tool holds {what}, "
                 f"at TCP pose {describe(pose_of(grip))}"

@@ -25,7 +25,6 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
-from pn2code.robot.commands import CHANGES
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership, moves, unread
 from pn2code.robot_scripts.assignments import one_after_the_other
@@ -324,7 +323,7 @@ class StepTranslator:
             and handling
             and handling.effect not in ("creates", "removes")
         ):
-            what = "a tool" if handling.effect in CHANGES else "a part"
+            what = "a tool" if handling.is_of_tool else "a part"
             raise UnsupportedError(
                 f"`{name}` {handling.effect} {what}, but device `{self.machine.owner.name}` has no arm",
                 span,
