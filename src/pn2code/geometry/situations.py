@@ -22,7 +22,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.contents import Contents, spot
-from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.graph import MOST_STATES, CellGraph
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.seeing import Scene, Seeing
 from pn2code.robot.parts import Part
@@ -34,7 +34,7 @@ Said = frozenset[tuple[int, str, bool]]
 MOST = 1_000_000
 """Situations that are looked at ..."""
 MORE = 4
-"""... or, of a graph with more than a quarter of them, so many times its states."""
+"""... or, where more states than usual were asked for, so many times these."""
 
 
 @frozen(eq=False)
@@ -105,9 +105,8 @@ class Situations:
         stands = tuple(self.doing.planner.home(r) for r in self.robots)
         self._number(self._begun(Situation(0, stands, self.doing.start)), -1, -1)
         todo = deque([0])
-        most = (
-            max(MOST, MORE * len(self.graph.arcs)) if len(self.graph.arcs) > MOST // MORE else MOST
-        )
+        is_large = len(self.graph.arcs) > MOST_STATES
+        most = MORE * len(self.graph.arcs) if is_large else MOST
         while todo:
             number = todo.popleft()
             here = self.situations[number]
