@@ -114,6 +114,12 @@ MONITOR_NODE = register(
     "a monitor watches something that does not exist",
     "A monitor names the places and transitions that it watches by id. One that does not exist (any more) is skipped.",
 )
+PORT_IDLE = register(
+    "port-idle",
+    "a port has no arc on its page",
+    "No transition of the page puts tokens into the port place or takes any from it. CPN Tools accepts that without a "
+    "word; mostly an arc was forgotten, or leads to another place of a similar name.",
+)
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
     "a kind of declaration is not supported",
