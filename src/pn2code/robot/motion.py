@@ -29,7 +29,13 @@ from pn2code.robot.transforms import (
 )
 
 FaultKind = Literal[
-    "unreachable", "joint-limit", "axis-speed", "singularity", "collision", "bad-command"
+    "unreachable",
+    "joint-limit",
+    "axis-speed",
+    "singularity",
+    "collision",
+    "wrong-tool",
+    "bad-command",
 ]
 
 # Conditioning (1 m) above this: an axis that is too fast is so because of a singularity.

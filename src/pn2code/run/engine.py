@@ -661,6 +661,8 @@ class Engine:
             raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
         if change.effect == "removes":
             self._expect_unclamped(robot, self.cell.parts[handling.part], change)
+        if robot.arm is not None:
+            self.monitor.use(robot.name, robot.arm.tool)
         for one in (change, *self.parts.parts.settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(

@@ -186,7 +186,8 @@ class _Look:
     def _pose(self, robot: str, stand: Stand | None) -> str:
         if stand is None or self.cell.robot(robot).is_device:
             return ""
-        return numbers(pose_of(self.cell.robot(robot).T_world_base @ stand.T_base_tcp))
+        own = self.cell.robot(robot)
+        return numbers(pose_of(own.T_world_base @ own.of_tool(stand.tool, stand.T_base_tcp)))
 
     def _faults(self) -> Iterator[Fault]:
         for (element, _), why in self.anyhow.faults.items():

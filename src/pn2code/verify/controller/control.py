@@ -309,6 +309,7 @@ def examine(
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
         is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
+        other: tuple[Exploration, Sequence[Mapping[str, Any]], Running] | None = None
         if in_counts is not None:
             said, asked = in_counts.said, in_counts.asked
             is_choiceless = False
@@ -326,11 +327,19 @@ def examine(
                 orders = found
             elif not ruled_out:
                 own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
-                orders = explore(running.net, plan.storage, limits, d, own)
+                first = limits.counts_from if not moves and _may_reduce(partition, limits) else None
+                some = limits if first is None else replace(limits, max_states=first)
+                orders = explore(running.net, plan.storage, some, d, own)
+                if first is not None and orders is not None and orders.why == "states":
+                    other = _reduced_orders(partition, plan, part, options, found, orders, at_once)
+                    if other is not None:
+                        orders, asked, of_orders_run = other
+                    elif limits.max_states != first:
+                        orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None
         keep = Keeper(plan, running)
-        if not is_choiceless and in_turns is None and in_counts is None:
+        if not is_choiceless and in_turns is None and in_counts is None and other is None:
             asked = orders.answers if orders is not found else ()
         doubt = ""
         if running.unsure is not None and said:
@@ -365,6 +374,8 @@ def examine(
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
+            reduced_orders=other is not None,
+            counted_orders=other is not None and other[0].is_counted,
             program=program,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
@@ -406,6 +417,45 @@ def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
     is_enough = most is None or most >= first
     is_of_states = all_stated(plan.properties, partition)
     return is_enough and is_of_states and not partition.net.timed
+
+
+def _may_reduce(partition: Partition, limits: Limits) -> bool:
+    """Whether all orders of firing of a cell need not be looked at, where they are too many."""
+    first, most = limits.counts_from, limits.max_states
+    is_enough = first is not None and (most is None or most >= first)
+    return is_enough and limits.turns_from is not None and not partition.net.timed
+
+
+def _reduced_orders(
+    partition: Partition,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    found: Exploration,
+    orders: Exploration,
+    at_once: str,
+) -> tuple[Exploration, Sequence[Mapping[str, Any]], Running] | None:
+    """What is said of the orders of firing with limits, or in turns, with the net of its evidence; None: nothing.
+
+    Args:
+        partition, plan, limits, options: as for `examine`.
+        found: all states of the cell.
+        orders: a part of those of all orders.
+        at_once: questions about orders.
+    """
+    plan = replace(plan, properties=m.Properties(), cut="")
+    options = replace(options, predicates=(), bindings=())
+    whole = replace(found, answers=())
+    counted = by_counts.look(
+        partition, plan, limits, options, part=whole, order=orders.answers, in_order=at_once
+    )
+    if counted is not None:
+        return counted.looked.found, counted.asked, Running.of(partition)
+    with suppress(OutOfReachError):
+        turned = _looked_in_turns(partition, plan, limits, options, at_once, None)
+        if turned is not None and turned.orders is not None:
+            return turned.orders, turned.orders.answers[:ORDERS], turned.running
+    return None
 
 
 def _part_of_orders(

@@ -59,6 +59,8 @@ MEANINGS = {
     OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
     IN_TIME: "nobody owes an answer for longer than the supervisor waits for it, if commands take planned times",
 }
+OF_ORDERS = frozenset({FINITE, BOUNDED, CONFLUENT})
+"""Checks of all orders in which a supervisor may fire."""
 KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
 STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH)
@@ -259,6 +261,8 @@ class Control:
         reduced: whether `found` is the reduced space of `by_turns`, or of `by_counts`.
         quiet: whether it is one of `by_counts`, and nothing is left for the supervisor at its end (`left_over`).
         program: of the whole cell as it runs; None: there is none.
+        reduced_orders: whether what is said of the orders of firing is from such a space, though `found` is not;
+            `counted_orders`: from one of `by_counts`.
     """
 
     partition: Partition
@@ -274,6 +278,8 @@ class Control:
     reduced: bool = False
     quiet: bool = False
     program: CellProgram | None = None
+    reduced_orders: bool = False
+    counted_orders: bool = False
 
     @property
     def is_counted(self) -> bool:
