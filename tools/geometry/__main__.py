@@ -5,7 +5,8 @@
 ./dev geometry --pairs 400           pairs of moves a second of processor time: mostly far apart, and dense
 ./dev geometry --cells 40            random cells: two arms, half of them with tracks and a turntable, and an arm with
                                      a belt, a machine with door and clamp, and a table that turns; parts are
-                                     stacked, tools changed, and sensors see the scene: what collides in PyBullet, or cannot be done
+                                     stacked, tools changed, and sensors see the scene:
+                                     what collides in PyBullet, or cannot be done
                                      with a part, is never said to be right; in
                                      each fourth of them an arm is placed anew, and what is proved of its
                                      new place is run as well
