@@ -21,7 +21,7 @@ from pn2code.robot.transforms import Array, inverse, matrix_of
 from pn2code.run.command_words import kind_and_label
 from pn2code.run.engine import Engine, RobotRunner
 from pn2code.run.realtime import RealtimeEngine
-from pn2code.run.record import ActionRecord, PartRecord
+from pn2code.run.record import ActionRecord, PartRecord, RunRecord
 
 Json = dict[str, Any]
 
@@ -130,6 +130,7 @@ class Tap:
             "activity": engine.activity,
             "punctuality": engine.punctuality.described(),
             "left_out": self._left_out,
+            "broken": _broken(record),
             "hand": None if engine.hand is None else engine.hand.told(),
             **more,
         }
@@ -188,6 +189,12 @@ class Tap:
         elif change.effect == "removes":
             state["frame"] = None
         return {"name": change.part, "state": state}
+
+
+def _broken(record: RunRecord) -> Json | None:
+    """The zone in which something was too fast, by its name and as `run.json` has it."""
+    found = record.too_fast
+    return None if found is None else {"zone": found.zone, **found.described()}
 
 
 def _supervisor(engine: RealtimeEngine) -> Json:
