@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers.tool_cell import TOML, placed
+from pn2code.arms import Arms
 from pn2code.replay.cell import at_start, describe, put, tool_in_use
 from pn2code.robot.commands import (
     Handling,
@@ -204,6 +205,31 @@ def test_what_needs_another_tool_is_a_fault(
 def test_a_cell_without_tools_that_are_changed_needs_none(tmp_path: Path) -> None:
     toml = TOML.replace('tools = ["gripper", "driver"]', 'tool = "vacuum_gripper"')
     after(read(tmp_path, toml), ToolAction("grip", 1.0, TAKE), ToolAction("drive", 1.0))
+
+
+def test_what_has_no_history_asks_every_tool(cell: RobotCell) -> None:
+    """A pose that only the longer tool reaches is neither out of reach nor proved to be within it."""
+    arms = Arms({"": cell})
+
+    def ahead(x: float, tcp: str = "") -> MoveJoint:
+        return MoveJoint(Pose(x, 0.0, 0.9, 0.0, math.pi / 2.0, 0.0), tcp=tcp)
+
+    said = {
+        (x, tcp): (bool(arms.why_unreachable("arm", ahead(x, tcp))), arms.depends_on_tool("arm", ahead(x, tcp)))
+        for x in (1.2, 1.95, 3.0)
+        for tcp in ("", "driver", "coupling")
+    }  # fmt: skip
+    assert said == {
+        (1.2, ""): (False, False),
+        (1.2, "driver"): (False, False),
+        (1.2, "coupling"): (False, False),
+        (1.95, ""): (False, True),
+        (1.95, "driver"): (False, False),
+        (1.95, "coupling"): (True, False),
+        (3.0, ""): (True, False),
+        (3.0, "driver"): (True, False),
+        (3.0, "coupling"): (True, False),
+    }
 
 
 # --- loads ---------------------------------------------------------------------------------------
