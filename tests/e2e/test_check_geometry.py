@@ -296,7 +296,7 @@ def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         result = CliRunner().invoke(app, arguments)
         assert result.exit_code == 3
         assert (
-            "not known: the cell has more states than were looked at, 300,000 at most"
+            "not known: the cell has more states than were looked at, 300,000 unless `--max-states` says more"
             in result.stdout
         )
         assert "`--set`" in result.stdout
