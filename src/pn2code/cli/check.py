@@ -20,6 +20,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    MaxStatesOption,
     SetOption,
     code_of,
     parse_values,
@@ -76,6 +77,7 @@ def check(
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     max_seconds: MaxSecondsOption = None,
+    max_states: MaxStatesOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.
@@ -97,10 +99,12 @@ def check(
             inputs=inputs,
             int_bits=int_bits,
             max_seconds=max_seconds,
+            max_states=max_states,
             form=form,
         )
         return
-    _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full)
+    given = {"max-states": max_states}
+    _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full, **given)
     d = Diagnostics()
     with in_time(max_seconds, net, "the net was checked", form):
         checked = examined(

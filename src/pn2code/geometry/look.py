@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Layout, Move, Pair, Verdict
+from pn2code.geometry.answers import Layout, Move, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
@@ -65,6 +65,24 @@ class _Meeting:
     met: Met
 
 
+@frozen
+class Seen:
+    """What was seen of a layout.
+
+    Args:
+        arms: what does not surely keep apart of two arms, by what they do; parts: of arms and parts that stand.
+    """
+
+    moves: tuple[Move, ...]
+    arms: dict[tuple[Side, Side], Pair]
+    parts: tuple[Pair, ...]
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        """All that does not surely keep apart."""
+        return (*self.arms.values(), *self.parts)
+
+
 class Look:
     """One layout."""
 
@@ -76,7 +94,7 @@ class Look:
         self.doing = Doing(self.planner, cell, shown)
         self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.moving)
-        self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
+        self.runs: dict[tuple[Situations, int, tuple[int, ...]], Run] = {}
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -85,32 +103,52 @@ class Look:
     def answer(self) -> Layout:
         """All that is known."""
         began = time.perf_counter()
-        self.options.stage("looking where arms can be ...")
-        found = Situations(self.graph, self.doing, self.robots)
-        found.explore()
-        self.options.stage("sweeping moves ...")
-        moves = self._moves(found)
-        self.options.stage("sweeping pairs ...")
-        bad = self._pairs(found)
-        pairs = [*bad.values(), *self._parts(found)]
-        touching = [sides for sides, pair in bad.items() if pair.answer == "no"]
+        found = self.situations(self.graph)
+        seen = self.seen(found)
+        touching = [sides for sides, pair in seen.arms.items() if pair.answer == "no"]
         explore = self.options.explore
         zones = None
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
-            zones = Zones(found, self.comparison, explore).proposals(bad, touching)
+            zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
+        return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
+
+    def situations(self, graph: CellGraph) -> Situations:
+        """All of them."""
+        self.options.stage("looking where arms can be ...")
+        found = Situations(graph, self.doing, self.robots)
+        found.explore()
+        return found
+
+    def seen(self, found: Situations) -> Seen:
+        """All moves, and what does not surely keep apart."""
+        self.options.stage("sweeping moves ...")
+        moves = self._moves(found)
+        self.options.stage("sweeping pairs ...")
+        arms = self._pairs(found)
+        return Seen(tuple(moves), arms, tuple(self._parts(found)))
+
+    def layout_of(
+        self,
+        found: Situations,
+        moves: tuple[Move, ...],
+        pairs: tuple[Pair, ...],
+        began: float,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> Layout:
+        """With the sizes of what was looked at."""
         is_apart = not found.stopped and not any(p.answer == "no" for p in pairs)
         return Layout(
             self.layout,
-            len(self.graph.arcs),
+            len(found.graph.arcs),
             len(found.situations),
-            tuple(moves),
-            tuple(pairs),
+            moves,
+            pairs,
             self.comparison.compared,
             self.comparison.sweeper.queries,
             time.perf_counter() - began,
             reason(found.why),
-            tuple(zones or ()),
+            proposals,
             self.comparison.nearest() if is_apart else None,
             found.stopped,
             tuple(r.name for r in self.cell.devices),
@@ -151,7 +189,8 @@ class Look:
         for part, trouble in self.doing.overlaps_at_start():
             answer: Verdict = "no" if trouble.margin < -ROUNDING else "unknown"
             does = f"stands at {numbers(pose_of(part.frame))}"
-            why = f"`{part.name}`, as `[parts.{part.kind.name}]` places it, {trouble.text}"
+            placed = "at its `rack`" if part.is_tool else f"as `[parts.{part.kind.name}]` places it"
+            why = f"`{part.name}`, {placed}, {trouble.text}"
             out.append(Move(part.name, "", does, "", "part", answer, why))
         return out
 
@@ -161,7 +200,8 @@ class Look:
         begins = ""
         if activity.end is not None:
             base = self.cell.robot(owner).T_world_base
-            begins = numbers(pose_of(base @ activity.end.T_base_tcp))
+            own = self.cell.robot(owner).of_tool(activity.end.tool, activity.end.T_base_tcp)
+            begins = numbers(pose_of(base @ own))
         does = words(activity.command)
         run = self._run(found, met)
         answer: Verdict = "no" if activity.is_part else "unknown"
@@ -171,7 +211,9 @@ class Look:
     def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
-        begins = numbers(pose_of(base @ leg.start.T_base_tcp))
+        robot = self.cell.robot(leg.robot)
+        own = robot.of_tool(leg.start.tool, leg.start.T_base_tcp)
+        begins = numbers(pose_of(base @ own))
         held = [p for p in load if p.holder]
         does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
         if on_it := sum(p.up is not None for p in held):
@@ -279,8 +321,10 @@ class Look:
     # --- words and runs --------------------------------------------------------------------------
 
     def _run(self, found: Situations, met: Met) -> Run | None:
-        """A run to where something is under way; None: there are enough of them."""
-        key = (met.situation, met.elements)
+        """A run to where something is under way; None: there are enough of them, or perhaps there is none."""
+        if found.graph.wider:
+            return None
+        key = (found, met.situation, met.elements)
         if key not in self.runs and len(self.runs) < MOST_RUNS:
             number = len(self.runs) + 1
             layout = f"-{self.layout}" if self.layout else ""

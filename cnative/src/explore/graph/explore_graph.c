@@ -335,7 +335,8 @@ void ex_graph_json(ex_run_t *run, FILE *out)
 
 void ex_graph_write(ex_run_t *run)
 {
-    if ((run->options.write_graph != NULL) && (run->graph->nodes <= run->options.write_limit)
+    if ((run->options.write_graph != NULL) && (run->graph->is_whole || run->options.writes_part)
+        && (run->graph->nodes <= run->options.write_limit)
         && !ex_write_graph(run, run->graph, run->options.write_graph)) {
         (void)fprintf(stderr, "explore: cannot write `%s`\n", run->options.write_graph);
     }

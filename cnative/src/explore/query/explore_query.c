@@ -580,12 +580,13 @@ static void answer_in_part(ex_queries_t *queries, ex_question_t *question)
     }
 }
 
-/* After an exploration that came to a limit: whether the first nodes have a run that violates what is asked of runs. */
+/* After an exploration that came to a limit: whether the first nodes have a run that violates what is asked of runs.
+ * The graph of these nodes may be wanted in any case. */
 static void answer_by_part(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;
     const int why = atomic_load(&run->why);
-    bool is_asked = false;
+    bool is_asked = run->options.writes_part;
     for (uint32_t i = 0U; i < queries->questions; i++) {
         is_asked = is_asked || is_of_part(queries, &queries->question[i]);
     }

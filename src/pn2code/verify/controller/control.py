@@ -55,11 +55,13 @@ from pn2code.verify.controller.control_types import (
     CONFLUENT,
     FINITE,
     MAX_FIRINGS,
+    MOST_WRITTEN,
     OWNERSHIP,
     CellProgram,
     Check,
     Control,
     Plan,
+    WrittenGraph,
 )
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.hunts import hunt
@@ -217,7 +219,14 @@ def examine(
             counts_part = replace(part, max_states=few)
         # To compile better what sees so little takes longer than it saves.
         soon = replace(options, first_states=counts_part.max_states) if may_count else options
-        found = explore(running.net, plan.storage, counts_part, d, soon)
+
+        def explore_all(limits: Limits, options: ExploreOptions) -> Exploration | None:
+            own = replace(
+                options, graph=plan.graph, graph_limit=None if plan.graph is None else MOST_WRITTEN
+            )
+            return explore(running.net, plan.storage, limits, d, own)
+
+        found = explore_all(counts_part, soon)
         if may_count and found is not None and found.why == "states":
             own = replace(soon, questions=of_orders(running, plan.firings), stem="orders")
             orders_part = _part_of_orders(running, plan, counts_part, own, d)
@@ -238,8 +247,7 @@ def examine(
                 rows = _hunted(running, plan, part, soon, in_counts.answers)
                 in_counts = replace(in_counts, answers=rows)
             if in_counts is None or in_counts.has_open:
-                more = first_part if in_counts is None else part
-                found = explore(running.net, plan.storage, more, d, options)
+                found = explore_all(first_part if in_counts is None else part, options)
                 if in_counts is not None and found is not None:
                     in_counts = in_counts.with_more(found)
         if in_counts is None and may_turn and found is not None and found.why == "states":
@@ -248,18 +256,20 @@ def examine(
                 if in_turns is not None:
                     turned = _told_in_turns(running, plan, part, options, found, in_turns)
                 if in_turns is None or _is_open(plan, turned):
-                    found = explore(running.net, plan.storage, part, d, options)
+                    found = explore_all(part, options)
                     if found is not None and in_turns is not None:
                         turned = _with_part(turned, found)
                         in_turns = in_turns if turned else None
                 if in_turns is not None and in_turns.running.meek and _has_runs(turned):
                     in_turns = None  # whether scripts can do so is looked for in the whole net
-                    found = explore(running.net, plan.storage, part, d, options)
+                    found = explore_all(part, options)
             except OutOfReachError as problem:  # what was seen of the whole is what is known
                 plan = replace(plan, cut=str(problem))
         if found is None:
             return None
         of_orders_run = running
+        if plan.graph is not None and found.complete and plan.graph.exists():
+            program = replace(program, graph=WrittenGraph(plan.graph, found.nodes, found.arcs))
         if in_turns is not None:
             found, running = in_turns.found, in_turns.running
             of_orders_run = running
