@@ -499,11 +499,11 @@ class _Analyser:
         if computed:
             self.d.error(
                 codes.NOT_SEQUENTIAL,
-                f"the initial marking of place `{places[computed[0]].short}`, which tells where {self.owner.phrase} is, "
-                "is computed: how many tokens it has is not known before the run",
+                f"the initial marking of place `{places[computed[0]].short}`, which tells where {self.owner.phrase} "
+                "is, is computed: how many tokens it has is not known before the run",
                 places[computed[0]].origins[0],
                 notes=[f"the places that tell where it is are {what}"],
-                hint="write the token itself, or a constant that is one (`val start = ..`), not a function or a condition",
+                hint="write the token itself, or a constant that is one (`val start = ..`): no function, no condition",
             )
             return False
         found = "hold several tokens initially" if marked else "hold no token initially"
