@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers import delivered_runtime, remembering_cc, tiny_compiler
+from helpers import delivered_runtime, in_memory, remembering_cc, tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
@@ -39,14 +39,20 @@ def shared() -> Path:
     return path
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Where the nets by others must be there (`.ci/run`), nothing is skipped for want of them."""
+    in_memory.begin(config)
     path = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
     missing = [name for name in ("corpus", "semantics-suite") if not (path / name).is_dir()]
     if os.environ.get("PN2CODE_SHARED_NEEDED") and missing:
         raise pytest.UsageError(
             f"PN2CODE_SHARED_NEEDED is set, but {path} has no {' and no '.join(missing)}; set PN2CODE_SHARED"
         )
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Temporary files are looked at only where tests have failed."""
+    in_memory.end(session.config, exitstatus)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -274,9 +274,43 @@ def test_an_order_that_does_not_matter(
     assert is_known is None or found["cell"]["reduced"] is is_known
 
 
+@pytest.mark.parametrize(("pallets", "confluence"), [(3, "yes"), (1, "no")])
+def test_an_order_that_does_not_matter_where_there_is_enough_for_all(
+    tmp_path: Path, pallets: int, confluence: str
+) -> None:
+    """Two stations take from the same place: it matters who comes first if there is one pallet only."""
+    net = families.net("pallets", 2, 4)
+    changed = net.replace("place Pallets = 2", f"place Pallets = {pallets}")
+    assert changed != net
+    found = verified(tmp_path, changed, toml=families.toml("pallets", 2))
+    by_name = {c["check"]: c["answer"] for c in found["controller"]}
+    assert by_name["confluence"] == confluence
+    if confluence == "yes":
+        assert found["cell"]["reduced"] and found["cell"]["bounds"] is None
+
+
+def test_a_cell_of_which_only_the_orders_are_too_many_is_counted_for_these(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has 115 states, and more if the supervisor may fire in any order."""
+    monkeypatch.setattr(command, "COUNTS_FROM", 130)
+    net, toml = families.net("zones", 3, 3), families.toml("zones", 3)
+    found = verified(tmp_path / "found", net, toml=toml)
+    whole = verified(tmp_path / "whole", net, "--no-reduction", toml=toml)
+    assert answers(found) == answers(whole)
+    assert found["cell"] == whole["cell"]
+    counted = {
+        c["check"]: "stands for many markings" in str(c["assumes"]) for c in found["controller"]
+    }
+    assert [check for check, is_so in counted.items() if is_so] == [
+        "finite-response",
+        "bounded-response",
+    ]
+
+
 def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
     verdict = judge(
-        120002, tmp_path, mutants=False, wants_medium=False, is_shop=True, only_verdicts=True
+        120002, tmp_path, mutants=False, wants_medium=False, family="shops", only_verdicts=True
     )
     assert verdict.wrong == ()
     reached = ("checks with limits", "properties that hold with limits", "closed nets counted")

@@ -6,6 +6,7 @@ python -m tools.bench.families --measure                               # what `v
 ring      robots that pass parts on from one to the next, on carriers that come back
 zones     robots in a circle, each of which needs the zones on both of its sides for each of its parts
 line      stations behind each other, with trays between them that hold any number of parts
+pallets   stations behind each other, each of which needs a pallet while it works; there are as many as stations
 retries   robots whose sensor tells whether they have a part; if not they try again, three times
 """
 
@@ -145,16 +146,29 @@ def retries(size: int, parts: int) -> Lines:
     return lines + steps + _END
 
 
+def pallets(size: int, parts: int) -> Lines:
+    """As `line`, and each part that is worked on is on one of n pallets."""
+    found: Lines = []
+    for x in line(size, parts):
+        at = x.split()
+        found.append(x)
+        if at[0] == "trans" and at[1] != "End":
+            found.append(f"      {'in' if at[1].startswith('Start') else 'out'} Pallets : ()")
+    return [_place("Pallets", f" = {size}"), *found]
+
+
 FAMILIES: dict[str, Callable[[int, int], Lines]] = {
     "ring": ring,
     "zones": zones,
     "line": line,
+    "pallets": pallets,
     "retries": retries,
 }
 MEASURED: dict[str, tuple[tuple[int, int], ...]] = {
     "ring": ((3, 12), (5, 12), (5, 100), (7, 12)),
     "zones": ((3, 6), (4, 6), (5, 6), (5, 50), (6, 6)),
     "line": ((2, 12), (3, 12), (4, 12), (4, 50), (6, 12)),
+    "pallets": ((2, 12), (3, 12), (4, 12), (4, 50)),
     "retries": ((1, 6), (2, 6), (3, 6), (3, 50), (4, 6)),
 }
 

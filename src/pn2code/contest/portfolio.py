@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -57,7 +57,8 @@ _WEIGHT = 4.0
 _LEAST_SLICE_S = 0.25
 """With less for each of the questions they are asked together."""
 _GRACE_S = 0.5
-"""So much later than its time a process may say what it knows."""
+_GRACE = 0.05
+"""So much later than its time, but by no more than that part of it, a process may say what it knows."""
 
 
 @frozen
@@ -174,6 +175,7 @@ class _Portfolio:
         self.program = program
         self.tables = tables
         self.ends = ends
+        self.grace = _grace(ends - time.monotonic())
         self.mebibytes = mebibytes
         self.only = only
         self.said: Said = SimpleQueue()
@@ -250,7 +252,7 @@ class _Portfolio:
     def end(self) -> None:
         """Nothing is to be asked any more."""
         if self.structural is not None:
-            self.structural.end()
+            self.structural.end(self.grace)
 
     def at_once(self) -> Iterator[Result]:
         """Without places or transitions nothing has to be asked."""
@@ -275,7 +277,7 @@ class _Portfolio:
             self.given = len(self.places)
             length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
             lanes = self._lanes(open_, number, length)
-            for answer in ask(self.program, lanes, self.said, until=self.ends + _GRACE_S):
+            for answer in ask(self.program, lanes, self.said, until=self.ends + self.grace):
                 assert isinstance(answer, Answer)
                 yield from self._noted(answer)
                 if all(line.is_done for line in self.lines):
@@ -480,12 +482,17 @@ class _Portfolio:
         return orders[which % len(orders)] if orders else ()
 
 
+def _grace(seconds: float) -> float:
+    """How long after the end of so much time a process is waited for."""
+    return max(0.0, min(_GRACE_S, _GRACE * seconds))
+
+
 def _too_large(question: str) -> bool:
     """Whether a question about a reduced net has a factor that the engine does not read."""
     return any(int(number) > MOST for number in re.findall(r"\d{10,}", question))
 
 
-def _until(ends: float, tasks: Sequence[Task]) -> Iterator[Task]:
+def _until(ends: float, tasks: Iterable[Task]) -> Iterator[Task]:
     """None of them goes on after the end, however long it took to make them."""
     for task in tasks:
         left = ends - time.monotonic()
@@ -498,12 +505,12 @@ def space(
 ) -> Space | None:
     """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
     ends = time.monotonic() + seconds
-    lanes = []
+    lanes: list[Iterable[Task]] = []
     if only in ("", "explore"):
-        lanes.append([Task("count", tables.text([]), seconds, mebibytes // 3)])
+        lanes.append(Task("count", tables.text([]), seconds, mebibytes // 3) for _ in range(1))
     if only in ("", METHOD):
         lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(program, [_until(ends, lane) for lane in lanes], until=ends + _GRACE_S):
+    for found in ask(program, [_until(ends, lane) for lane in lanes], until=ends + _grace(seconds)):
         if isinstance(found, Space):
             return found
     return None

@@ -70,7 +70,7 @@ class Comparison:
         self.cell, self._planner, self._backend = cell, planner, backend
         self.sweeper = Sweeper(shown)
         self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.moving}
-        self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
+        self._boxes = {k.name: backend.part_box(k) for k in cell.kinds}
         self._tracks: dict[tuple[int, str], Track] = {}
         self._extents: dict[tuple[int, str], tuple[Array, Array]] = {}
         self._around: dict[tuple[int, str], tuple[Apart, Apart]] = {}

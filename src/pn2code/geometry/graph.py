@@ -30,7 +30,9 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import Binding
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
-from pn2code.verify.controller.control_types import CellProgram
+from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
 from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -38,7 +40,7 @@ from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Generated, Sizes
 
-MOST_STATES = 300_000
+MOST_STATES = MOST_WRITTEN
 """States of a cell that are looked at if nobody wants more ..."""
 MOST_HELD = 3_000_000
 """... and never more than these: each takes about a kilobyte."""
@@ -129,6 +131,27 @@ class CellGraph:
             if s.colset is not None and s not in outputs and s.name in element.binding
         }
 
+    def delay(self, element: Element) -> float:
+        """After how many units of model time the last token that it puts into a timed place is available.
+
+        Raises GameError: that cannot be computed.
+        """
+        t = self.partition.net.transitions[element.transition]
+        values = element.binding
+        binding = {
+            s: from_json(s.colset, values[s.name])
+            for s in t.variables
+            if s.colset is not None and s.name in values
+        }
+        self._game.evaluator.now = 0
+        delay, most = self._game.delay(t, binding), 0.0
+        for arc in t.arcs:
+            is_put = arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH)
+            if is_put and self.partition.net.places[arc.place].colset.timed:
+                put = self._game.put(TimedMultiSet(), arc, binding, delay, 0)
+                most = max([most, *(float(x.stamp) for x in put if isinstance(x, Timed))])
+        return most
+
     def _told(self, element: Element) -> tuple[Command, ...]:
         if element.is_step:
             return ()
@@ -158,6 +181,11 @@ def explore_cell(
     if program is None:
         program = CellProgram(Running.of(partition), (), Generated())
     running, made = program.running, program.generated
+    written = program.graph
+    if written is not None and written.nodes <= (limits.max_states or MOST_STATES):
+        graph = _read(partition, storage, running, _rows(written.file), "")
+        if (len(graph.arcs), sum(map(len, graph.arcs))) == (written.nodes, written.arcs):
+            return graph
     limits = replace(
         limits,
         max_states=min(limits.max_states or MOST_STATES, MOST_HELD),

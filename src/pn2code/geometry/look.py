@@ -209,7 +209,8 @@ class Look:
         for part, trouble in self.doing.overlaps_at_start():
             answer: Verdict = "no" if trouble.margin < -ROUNDING else "unknown"
             does = f"stands at {numbers(pose_of(part.frame))}"
-            why = f"`{part.name}`, as `[parts.{part.kind.name}]` places it, {trouble.text}"
+            placed = "at its `rack`" if part.is_tool else f"as `[parts.{part.kind.name}]` places it"
+            why = f"`{part.name}`, {placed}, {trouble.text}"
             out.append(Move(part.name, "", does, "", "part", answer, why))
         return out
 
@@ -219,7 +220,8 @@ class Look:
         begins = ""
         if activity.end is not None:
             base = self.cell.robot(owner).T_world_base
-            begins = numbers(pose_of(base @ activity.end.T_base_tcp))
+            own = self.cell.robot(owner).of_tool(activity.end.tool, activity.end.T_base_tcp)
+            begins = numbers(pose_of(base @ own))
         does = words(activity.command)
         run = self._run(found, met)
         answer: Verdict = "no" if activity.is_part else "unknown"
@@ -229,7 +231,9 @@ class Look:
     def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
-        begins = numbers(pose_of(base @ leg.start.T_base_tcp))
+        robot = self.cell.robot(leg.robot)
+        own = robot.of_tool(leg.start.tool, leg.start.T_base_tcp)
+        begins = numbers(pose_of(base @ own))
         held = [p for p in load if p.holder]
         does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
         if on_it := sum(p.up is not None for p in held):

@@ -92,7 +92,7 @@ class Situations:
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
         cell = doing.start.parts.cell
-        tables = {r.name: r.carrying for r in cell.moving} if cell.parts else {}
+        tables = {r.name: r.carrying for r in cell.moving} if cell.kinds else {}
         self._with_tables = frozenset(name for name, own in tables.items() if own)
         self._owner_names = {o.index: o.name for o in graph.partition.owners}
         self._acting = {
@@ -339,7 +339,7 @@ class Situations:
         by_arm: list[list[tuple[int, Activity]]],
     ) -> None:
         """Parts that stand while arms move: those that are there, and those that others put there meanwhile."""
-        if not self.doing.start.parts.cell.parts:
+        if not self.doing.start.parts.cell.kinds:
             return
         own = here.contents.standing
         for acts in by_arm:

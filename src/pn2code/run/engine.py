@@ -658,6 +658,8 @@ class Engine:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
             raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
+        if robot.arm is not None:
+            self.monitor.use(robot.name, robot.arm.tool)
         for one in (change, *self.parts.parts.settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(

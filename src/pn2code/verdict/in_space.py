@@ -20,6 +20,7 @@ from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import (
     Along,
+    Handling,
     Move,
     MoveAxes,
     MoveCircular,
@@ -242,6 +243,8 @@ def _one_after_the_other(
                 if before is not None:
                     yield origin, before, move
                 before = move
+            case Line(t.Tool(handling=Handling(effect="couples" | "uncouples"))):
+                before = None  # another TCP is where the move before has led
             case Line(t.Assign() | t.Clear() | t.Mark() | t.Tool() | t.WaitTime() | t.Write()):
                 continue
             case Region(body=body):

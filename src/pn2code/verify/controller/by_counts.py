@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 from pn2code.base.frozen import frozen
@@ -124,6 +125,7 @@ def abstract(
     properties: Sequence[Stated] = (),
     *,
     least: int = LEAST_TOKENS,
+    demanded: Mapping[int, int] = MappingProxyType({}),
 ) -> Abstract | None:
     """The net of turns with its limits; None: there is nothing to count so.
 
@@ -132,7 +134,7 @@ def abstract(
         plan: what is asked.
         kept: more places of which all tokens count.
         properties: conditions on its states, those of `plan` that are not known.
-        least: as for `counts`.
+        least, demanded: as for `counts`.
     """
     loose = loosened(partition, [x.places for x in properties])
     if loose is None or not partition.final_places:
@@ -143,7 +145,15 @@ def abstract(
     asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
     asked |= {p for x in properties for p in x.exact}
     free = own - asked - {c.place for c in partition.channels}
-    made = counted(running.net, plan.storage, table, free, never=running.probes, least=least)
+    made = counted(
+        running.net,
+        plan.storage,
+        table,
+        free,
+        never=running.probes,
+        least=least,
+        demanded=demanded,
+    )
     if made is None:
         return None
     return Abstract(running, made.counts, made.turns, made.ranking, made.sizes, tuple(properties))
@@ -239,10 +249,23 @@ def _all_commute(
     if not pairs:
         return pairs is not None
     # The states in which it takes any of its firings.
-    alone = replace(made, properties=())
-    lines = questions(alone, plan, made.ranking.rising(), first=False, apart=pairs)
-    own = replace(options, questions=lines, stem="orders")
-    found = explore(made.running.net, plan.storage, limits, Diagnostics(), own)
+    alone: Abstract | None = replace(made, properties=())
+    more, limited = diamonds.demanded(pairs), {x.place: x.most for x in made.counts.limits}
+    if any(n > limited.get(p, n) for p, n in more.items()):
+        alone = abstract(partition, plan, options.whole, demanded=more)
+    if alone is None:
+        return False
+    lines = questions(alone, plan, alone.ranking.rising(), first=False, apart=pairs)
+    own = replace(
+        options,
+        turns=alone.turns,
+        counts=alone.counts,
+        sizes=alone.sizes,
+        generated=options.generated if alone.sizes is made.sizes else Generated(),
+        questions=lines,
+        stem="orders",
+    )
+    found = explore(alone.running.net, plan.storage, limits, Diagnostics(), own)
     is_seen = found is not None and found.complete and found.error is None
     if found is None or not is_seen or len(found.answers) != lines.count("\n? "):
         return False
