@@ -115,7 +115,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             codes.ROBOT_PART,
             f"at the start{where}: {fault}",
             config.locator.origin("parts"),
-            hint="change `at` of the kind of parts, or move what it overlaps",
+            hint="change `at` of the kind of parts, the place of the tool, or move what it overlaps",
         )
         return
     finally:
