@@ -118,7 +118,7 @@ class Arms:
         is_free = isinstance(command, MoveLinear | MoveCircular)
         for layout, cell in self._cells.items():
             for robot in cell.moving:
-                if robot.name != name:
+                if robot.name != name or (tool and tool not in robot.tools):
                     continue
                 own = replace(robot, begins_with=tool)
                 own = replace(own, branch=None) if is_free else own

@@ -239,11 +239,13 @@ def test_properties_of_states_have_the_same_answers_with_any_number_of_parts(
     assert by_name["bound Waiting <= 0"]["evidence"]["confirmed"]
 
 
-def test_a_property_of_runs_needs_all_states(tmp_path: Path) -> None:
+def test_a_property_of_runs_is_asked_of_all_states(tmp_path: Path) -> None:
     asked = ("--property", "every fires(Send) is followed by fires(Pack) || fires(Drop)")
-    found = verified(tmp_path, NET, *asked)
+    found = verified(tmp_path / "found", NET, *asked)
     assert found["properties"][0]["answer"] == "yes"
-    assert found["cell"]["reduced"] is False
+    few = verified(tmp_path / "few", NET, *asked, "--max-states", "100", parts=40)
+    assert few["properties"][0]["answer"] == "inconclusive"
+    assert answers(few) == answers(found)
 
 
 @pytest.mark.parametrize(
@@ -333,6 +335,24 @@ def test_a_property_that_is_not_so_leaves_the_other_answers_as_they_are(tmp_path
     assert [row["answer"] for row in found["properties"]] == ["no", "yes"]
     assert found["cell"]["reduced"] is True
     assert answers(found) == answers(alone)
+
+
+def test_formulas_about_places_of_the_supervisor_are_answered_in_states(tmp_path: Path) -> None:
+    """A property that they do not tell takes nothing from the others, nor from the checks."""
+    texts = {
+        "ltl (tokens(Busy) = 0) U (tokens(Busy) > 0)": "yes",  # before the end, not at the end
+        "ltl G (tokens(Free) = 1 -> (tokens(Free) = 1) U (tokens(Busy, Finished) = 1))": "yes",
+        "every fires(Send) is followed by fires(Heard)": "inconclusive",
+    }
+    asked = [word for text in texts for word in ("--property", text)]
+    alone = verified(tmp_path / "alone", NET, parts=40)
+    found = verified(tmp_path / "found", NET, *asked, "--max-states", "200", parts=40)
+    assert {row["holds"]: row["answer"] for row in found["properties"]} == texts
+    assert answers(found) == answers(alone)
+    assert found["cell"]["reduced"] is alone["cell"]["reduced"] is True
+    assert "stands for many markings" in str(found["properties"][0]["assumes"])
+    whole = verified(tmp_path / "whole", NET, *asked, "--no-reduction")
+    assert {row["answer"] for row in whole["properties"]} == {"yes"}
 
 
 OF_PATHS = (

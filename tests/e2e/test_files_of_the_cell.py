@@ -321,9 +321,8 @@ def test_a_cell_that_is_large_as_it_runs_is_not_looked_at_with_its_files_first(
     assert partition is not None
     limits = Limits(threads=1, traces=0, turns_from=command.TURNS_FROM)
     run = check.Run(limits, Diagnostics(), ExploreOptions(quick=True))
-    seen = check.FILES_FROM // check.FEWER
-    small = check.whole(partition, net.storage, run, Rules(), running_states=seen)
-    large = check.whole(partition, net.storage, run, Rules(), running_states=seen + 1)
+    small = check.whole(partition, net.storage, run, Rules(), running_states=check.LARGE)
+    large = check.whole(partition, net.storage, run, Rules(), running_states=check.LARGE + 1)
     assert (small.answer, small.reduced) == ("yes", False)
     assert (large.answer, large.reduced) == ("yes", True)
     assert large.nodes < small.nodes

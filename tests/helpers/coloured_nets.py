@@ -6,8 +6,8 @@
     net.tables()    # what the contest's examinations ask about
 
 Nothing of the tool's reading, typing, evaluation or unfolding is used. A term is a text (a variable or a constant), a
-number (of an integer range), or a tuple with an operator first; see the functions at the end.
-A number belongs to the first range, or to that of ("number", range, n).
+number (of an integer range), or a tuple with an operator first; see the functions at the end. A number
+belongs to the first range, or to that of ("number", range, n).
 """
 
 from __future__ import annotations

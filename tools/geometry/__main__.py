@@ -6,7 +6,8 @@
                                      --jobs 2: with two processes
 ./dev geometry --cells 40            random cells: two arms, half of them with tracks and a turntable, and an arm with
                                      a belt, a machine with door and clamp, and a table that turns; parts are
-                                     stacked, and sensors see the scene: what collides in PyBullet, or cannot be done
+                                     stacked, tools changed, and sensors see the scene:
+                                     what collides in PyBullet, or cannot be done
                                      with a part, is never said to be right; in
                                      each fourth of them an arm is placed anew, and what is proved of its
                                      new place is run as well; --large: instead of that each is looked at as if it had
@@ -32,6 +33,7 @@ from tools.geometry.pairs import WORKLOADS, measured
 from tools.geometry.unguarded import unguarded
 from tools.geometry.wander import wander
 
+from helpers.changing_cells import changing_cell
 from helpers.machine_cells import machine_cell
 from helpers.netbuilder import cpn
 from helpers.sighted_cells import sighted_cell
@@ -197,8 +199,11 @@ def placed(cell: Path, robot: str, out: Path, seed: int, walks: int) -> tuple[st
 def random_cell(number: int) -> tuple[str, str]:
     """In turns two arms, two arms with tracks and a turntable, a welding pair, and an arm between devices that move.
 
-    Each other one of the last asks sensors that see the scene.
+    Each other one of the last asks sensors that see the scene; of these each other one changes tools instead, with a
+    second arm.
     """
+    if number % 16 == 15:
+        return changing_cell(Random(number))
     if number % 8 == 7:
         return sighted_cell(Random(number))
     if number % 4 == 3:

@@ -659,6 +659,7 @@ TOOL = Section(
             unit="m",
             low=0.0,
             above=True,
+            high=0.05,
         ),
         Key(
             "angle_deg",
@@ -668,7 +669,7 @@ TOOL = Section(
             unit=_DEGREES,
             low=0.0,
             above=True,
-            high=180.0,
+            high=15.0,
         ),
     )
 )

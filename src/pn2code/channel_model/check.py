@@ -41,8 +41,8 @@ MOST_IN_TURNS = 4_000_000
 MOST_TRACES = 16
 FILES_FROM = 300_000
 """Of a cell with its medium: then it is asked what the cell as it runs says of its files (`by_cell`)."""
-FEWER = 4
-"""The cell as it runs has at most one of so many states. If they are too many it is asked at once."""
+LARGE = 20_000
+"""States of the cell as it runs: with its medium it has four to twelve times as many, so it is asked at once."""
 QUICK_STATES = 2_000
 """Of a cell: beyond that it pays to have the compiler work longer."""
 WHOLE = "the cell with its medium"
@@ -217,13 +217,15 @@ def whole(
         return full(run.limits)
     if shown is not None and not by_cell.why_not(partition, rules):
         return _by_cell(shown, assumes, 0.0)
-    if not by_cell.why_not(partition, rules) and min(first, most) > FILES_FROM:
-        if running_states * FEWER <= FILES_FROM:
+    is_too_large = running_states > min(LARGE, most)
+    if not by_cell.why_not(partition, rules) and (is_too_large or min(first, most) > FILES_FROM):
+        if not is_too_large:
             part = full(replace(run.limits, max_states=FILES_FROM))
             if part.answer != "inconclusive" or part.why != _incomplete("states"):
                 return part
         began = time.perf_counter()
-        limits = replace(run.limits, max_states=run.limits.max_states or MOST_IN_TURNS)
+        limit = max(run.limits.max_states or MOST_IN_TURNS, running_states)
+        limits = replace(run.limits, max_states=limit)
         found = by_cell.shown(partition, rules, storage, limits, run.options)
         if found is not None:
             return _by_cell(found, assumes, time.perf_counter() - began)

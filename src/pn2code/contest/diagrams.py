@@ -51,9 +51,10 @@ class Diagrams:
     def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
         with self.lock:
             orders = self.orders
-        row, shares = orders[which : which + 1], list(_SHARES[-1:])
+        shares: tuple[float, ...]
+        row, shares = orders[which : which + 1], (1.0,)
         if len(orders) > 2:
-            row, shares = [*orders[which::2][:3], orders[which]], list(_SHARES)
+            row, shares = [*orders[which::2][:3], orders[which]], _SHARES
         seconds = max(0.0, ends - time.monotonic())
-        for order, share in zip(row, shares[-len(row) :], strict=True):
+        for order, share in zip(row, shares[len(shares) - len(row) :], strict=True):
             yield Task("sizes", self.tables.text([], order), share * seconds, mebibytes)

@@ -122,14 +122,14 @@ def question(number: int, part: Part, tables: Tables) -> Question | None:
     try:
         if part.kind == "reach":
             return Question(number, "reach", conditions.parsed(words, tables.pre))
-        sum_ = AtMost(_terms(words), 0)
+        sum_ = AtMost(terms(words), 0)
     except TooLargeError:
         return None
     least = sum(n * tables.initial[p] for p, n in sum_.factors)
     return Question(number, "bound", sum_, least)
 
 
-def _terms(words: str) -> tuple[tuple[int, int], ...]:
+def terms(words: str) -> tuple[tuple[int, int], ...]:
     """The terms of `sum N (place factor).. limit`."""
     numbers = list(map(int, words.split()[2:-1]))
     return tuple(zip(numbers[::2], numbers[1::2], strict=True))

@@ -405,7 +405,27 @@ class Doing:
         change, parts = found[0]
         does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
+        doubt = self._expect_unclamped(doing, change) or doubt
         return after, self._expect_apart(doing, change, parts) or doubt
+
+    def _expect_unclamped(self, doing: _Handled, change: PartChange) -> str:
+        """Whether a part that leaves the cell is in no clamp that holds it.
+
+        Gives why that is not known; "": it is so. Raises PartFault if it is not so.
+        """
+        if change.effect != "removes":
+            return ""
+        kind = self._cell.parts[doing.handling.part]
+        doubt = ""
+        for held in holding(self._cell, kind, matrix_of(change.pose)):
+            own = next((s for s in doing.standing if s.robot == doing.owner), None)
+            if own is None or held.device.name != doing.owner:
+                # Another program moves it, perhaps meanwhile.
+                does = f"`{doing.owner}` removes `{change.part}`"
+                doubt = f"{does}: whether `{held.name}` has let go then is not followed"
+            elif held.holds(own.q):
+                raise PartFault(held.words(doing.owner, change.part, own.q, "removes"))
+        return doubt
 
     def _one_of(
         self, found: list[tuple[_Done, Parts]], faults: list[PartFault], does: str

@@ -8,6 +8,7 @@ from pn2code.geometry.graph import MOST_STATES
 from pn2code.robot.commands import (
     Along,
     Command,
+    Handling,
     Measure,
     MoveAxes,
     MoveCircular,
@@ -31,7 +32,7 @@ _OPEN = {
     "situations": "arms and parts can be in more ways together than were looked at",
     "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
     "then is not followed",
-    "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
+    "order": "what becomes of a part or tool depends on how far two programs are that handle it at the same time",
     "turning": "what becomes of a part depends on how far a turntable, a belt or another axis is that another program "
     "moves",
     "sees": "the cell has more states than were looked at, and a sensor sees its scene, so that each state counts: "
@@ -70,6 +71,8 @@ def words(command: Command | None) -> str:
             return "home"
         case Measure():
             return "measure"
+        case ToolAction(action=action, handling=Handling(is_of_tool=True) as change):
+            return f"tool {action} {change}"
         case ToolAction(action=action):
             return f"tool {action}"
         case Wait(duration=seconds):

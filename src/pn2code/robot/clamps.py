@@ -52,11 +52,11 @@ class Held:
         spot = matrix_of(cell.places[self.clamp.place])
         return difference(T_world_part, spot)[0] <= kind.tolerance
 
-    def words(self, who: str, part: str, q: Array) -> str:
+    def words(self, who: str, part: str, q: Array, does: str = "pulls") -> str:
         """That it cannot, for people."""
         gap, most = 1000.0 * self.gap(q), 1000.0 * self.clamp.axis.upper
         return (
-            f"`{who}` pulls `{part}` out of `{self.name}`, which holds it: its gap is {gap:.1f} mm, and it lets go at "
+            f"`{who}` {does} `{part}` out of `{self.name}`, which holds it: its gap is {gap:.1f} mm, and it lets go at "
             f"{most:.1f} mm"
         )
 

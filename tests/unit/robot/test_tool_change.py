@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from helpers.tool_cell import TOML, placed
+from pn2code.arms import Arms
+from pn2code.replay.cell import at_start, describe, put, tool_in_use
 from pn2code.robot.commands import (
     Handling,
     MoveHome,
@@ -23,6 +25,7 @@ from pn2code.robot.parts import PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones import ZoneWatch
+from pn2code.run.record import PartRecord
 
 DOWN = math.pi
 LOCK = {name: Handling("couples", name) for name in ("gripper", "driver")}
@@ -204,6 +207,31 @@ def test_a_cell_without_tools_that_are_changed_needs_none(tmp_path: Path) -> Non
     after(read(tmp_path, toml), ToolAction("grip", 1.0, TAKE), ToolAction("drive", 1.0))
 
 
+def test_what_has_no_history_asks_every_tool(cell: RobotCell) -> None:
+    """A pose that only the longer tool reaches is neither out of reach nor proved to be within it."""
+    arms = Arms({"": cell})
+
+    def ahead(x: float, tcp: str = "") -> MoveJoint:
+        return MoveJoint(Pose(x, 0.0, 0.9, 0.0, math.pi / 2.0, 0.0), tcp=tcp)
+
+    said = {
+        (x, tcp): (bool(arms.why_unreachable("arm", ahead(x, tcp))), arms.depends_on_tool("arm", ahead(x, tcp)))
+        for x in (1.2, 1.95, 3.0)
+        for tcp in ("", "driver", "coupling")
+    }  # fmt: skip
+    assert said == {
+        (1.2, ""): (False, False),
+        (1.2, "driver"): (False, False),
+        (1.2, "coupling"): (False, False),
+        (1.95, ""): (False, True),
+        (1.95, "driver"): (False, False),
+        (1.95, "coupling"): (True, False),
+        (3.0, ""): (True, False),
+        (3.0, "driver"): (True, False),
+        (3.0, "coupling"): (True, False),
+    }
+
+
 # --- loads ---------------------------------------------------------------------------------------
 
 
@@ -255,6 +283,24 @@ def test_a_tool_in_use_is_in_zones(tmp_path: Path) -> None:
     local = (placed_["arm/driver"] - flange[:3, 3]) @ flange[:3, :3]
     assert local.min(axis=0) == pytest.approx([-0.05, -0.05, 0.0])
     assert local.max(axis=0) == pytest.approx([0.05, 0.05, 0.28])
+
+
+def test_what_the_replay_page_is_told(tmp_path: Path) -> None:
+    """A tool is one kind of things, with the shapes of all links; one that is in use hangs at the coupling."""
+    cell = read(tmp_path, TOML.replace("tools = [", 'begins_with = "driver"\ntools = ['))
+    body, bit = describe(cell)["kinds"]["driver"]
+    assert np.array(body[1]).reshape(4, 4)[2, 3] == pytest.approx(0.08)
+    assert np.array(bit[1]).reshape(4, 4)[2, 3] == pytest.approx(0.16 + 0.06)
+    start = at_start(cell)
+    assert start["driver"]["holder"] == "arm" and start["gripper"]["holder"] == ""
+    assert np.array(start["gripper"]["frame"]).reshape(4, 4) == pytest.approx(LEFT)
+    parts = Parts(cell)
+    left = parts.handle("arm", FREE["driver"], RIGHT)
+    taken = parts.handle("arm", LOCK["gripper"], LEFT)
+    assert put(cell, left, "arm")["holder"] == "" and put(cell, taken, "arm")["holder"] == "arm"
+    entries = [PartRecord(1.0, "arm", left), PartRecord(2.0, "arm", taken)]
+    arm = cell.robot("arm")
+    assert [tool_in_use(arm, entries, t) for t in (0.5, 1.5, 2.5)] == ["driver", "", "gripper"]
 
 
 def test_contacts_that_are_permitted(cell: RobotCell) -> None:

@@ -45,7 +45,7 @@ from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.left_over import nothing_left
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
-from pn2code.verify.controller.stated import Stated, stated
+from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -72,6 +72,7 @@ class Seen:
         said: what follows of the questions about the cell, in the order of `control.of_cell`.
         asked: the same of those about its orders.
         answers: what is said of properties, in their order.
+        others: the numbers of properties that are about the closed net alone.
         is_quiet: whether nothing is left for the supervisor where nothing can happen any more (`left_over`).
     """
 
@@ -80,11 +81,15 @@ class Seen:
     asked: tuple[Mapping[str, Any], ...]
     answers: tuple[Mapping[str, Any], ...]
     is_quiet: bool
+    others: frozenset[int] = frozenset()
 
     @property
     def has_open(self) -> bool:
         """Whether all states have to be explored for a property."""
-        return any(row["answer"] == "unknown" for row in self.answers)
+        return any(
+            row["answer"] == "unknown" and i not in self.others
+            for i, row in enumerate(self.answers)
+        )
 
     def with_more(self, whole: Exploration) -> Seen | None:
         """With what a larger part of the whole space says of open properties; None: that is all that is asked.
@@ -234,9 +239,11 @@ def look(
     looked = Looked(running, _bounded(found, made, plan), None)
     told: dict[int, Mapping[str, Any]] = {i: {**row, "part": True} for i, row in enumerate(known)}
     for (i, x), row in zip(properties, rows, strict=False):
-        if row["answer"] == "yes":
+        if x.holds(row):
             told[i] = x.row(plan.properties.properties[i])
-    return Seen(looked, said, asked, tuple(told[i] for i in sorted(told)), quiet["answer"] == "yes")
+    rows_of = tuple(told[i] for i in sorted(told))
+    others = frozenset(i for i, p in enumerate(plan.properties.properties) if p.of_net)
+    return Seen(looked, said, asked, rows_of, quiet["answer"] == "yes", others)
 
 
 def _all_commute(
@@ -275,7 +282,7 @@ def _all_commute(
 def _open_properties(
     partition: Partition, plan: Plan, known: Sequence[Mapping[str, Any]]
 ) -> list[tuple[int, Stated]] | None:
-    """Those that a part of the whole space does not decide, by number; None: one is no condition on states."""
+    """Those that states may tell and a part of the whole space does not, by number; None: it was not asked."""
     properties = plan.properties.properties
     if len(known) < len(properties):
         return None
@@ -283,10 +290,7 @@ def _open_properties(
     over = Running.of(partition, loose=True).over if left else 0
     found: list[tuple[int, Stated]] = []
     for i in left:
-        own = stated(properties[i], over, plan.properties, partition)
-        if own is None:
-            return None
-        found.append((i, own))
+        found += ((i, x) for x in ways(properties[i], over, plan.properties, partition))
     return found
 
 

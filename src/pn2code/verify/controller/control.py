@@ -69,7 +69,7 @@ from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running
-from pn2code.verify.controller.stated import Stated, all_stated, stated
+from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction
@@ -255,7 +255,7 @@ def examine(
                 in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
                 if in_turns is not None:
                     turned = _told_in_turns(running, plan, part, options, found, in_turns)
-                if in_turns is None or any(row["answer"] == "unknown" for row in turned):
+                if in_turns is None or _is_open(plan, turned):
                     found = explore_all(part, options)
                     if found is not None and in_turns is not None:
                         turned = _with_part(turned, found)
@@ -398,7 +398,14 @@ def _hunted(
         return explore(running.net, plan.storage, limits, Diagnostics(), options)
 
     own = replace(options, bindings=(), whole=())
-    return hunt(properties, rows, lines, limits, own, explored)
+    mine = [i for i, p in enumerate(plan.properties.properties) if not p.of_net]
+    found = hunt(
+        [properties[i] for i in mine], [rows[i] for i in mine], lines, limits, own, explored
+    )
+    all_rows = list(rows)
+    for i, row in zip(mine, found, strict=True):
+        all_rows[i] = row
+    return tuple(all_rows)
 
 
 def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
@@ -406,7 +413,7 @@ def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
     most, least = limits.max_states, limits.turns_from
     if least is None or (most is not None and most <= least):
         return False
-    return not plan.cut and not partition.net.timed and all_stated(plan.properties, partition)
+    return not plan.cut and not partition.net.timed
 
 
 def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
@@ -415,8 +422,7 @@ def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
     if first is None or limits.turns_from is None or first > limits.turns_from:
         return False
     is_enough = most is None or most >= first
-    is_of_states = all_stated(plan.properties, partition)
-    return is_enough and is_of_states and not partition.net.timed
+    return is_enough and not partition.net.timed
 
 
 def _may_reduce(partition: Partition, limits: Limits) -> bool:
@@ -485,10 +491,9 @@ def _looked_in_turns(
 ) -> Looked | None:
     """What is seen in turns; None: it is not said."""
     over = Running.of(partition, loose=True).over
-    asked = plan.properties
-    properties = [x for p in asked.properties if (x := stated(p, over, asked, partition))]
+    properties = [x for _, x in _told_by_states(partition, plan, over)]
     loose = by_turns.loosened(partition, [x.places for x in properties])
-    if loose is None or len(properties) != len(asked.properties):
+    if loose is None:
         return None
     running, _ = loose
 
@@ -522,13 +527,26 @@ def _told_in_turns(
 ) -> tuple[Mapping[str, Any], ...]:
     """What is known of properties: what holds in turns, what a part of the cell's states says, and runs."""
     properties = plan.properties.properties
-    rows: list[Mapping[str, Any]] = []
-    for p, mine, of_part in zip(
-        properties, looked.found.answers, part.answers[: len(properties)], strict=False
-    ):
-        row: Mapping[str, Any] = {**of_part, "part": True}
-        rows.append(Stated.row(p) if mine["answer"] == "yes" else row)
+    rows: list[Mapping[str, Any]] = [
+        {**row, "part": True} for row in part.answers[: len(properties)]
+    ]
+    told = _told_by_states(running.partition, plan, looked.running.over)
+    for (i, x), mine in zip(told, looked.found.answers, strict=False):
+        if x.holds(mine):
+            rows[i] = Stated.row(properties[i])
     return _hunted(running, plan, limits, options, rows)
+
+
+def _told_by_states(partition: Partition, plan: Plan, over: int) -> list[tuple[int, Stated]]:
+    """What is asked of states instead of the properties, by their numbers."""
+    asked = plan.properties
+    return [(i, x) for i, p in enumerate(asked.properties) for x in ways(p, over, asked, partition)]
+
+
+def _is_open(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether something is asked of the cell that is not known."""
+    told = zip(plan.properties.properties, rows, strict=False)
+    return any(row["answer"] == "unknown" and not p.of_net for p, row in told)
 
 
 def _has_runs(rows: Sequence[Mapping[str, Any]]) -> bool:
