@@ -255,11 +255,16 @@ def test_no_run_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
         assert (found.of_pairs if len(robots) == 2 else found.of_moves) == "no", met
 
 
-@pytest.mark.parametrize("seed", range(200, 200 + amount(2, 100)))
+FINE = 205
+"""A random cell whose arms keep apart, so that its walks say something."""
+
+
+@pytest.mark.parametrize("seed", [FINE, *range(200, 200 + amount(0, 100))])
 def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     """The same with arms that may take any time for their ways, on random walks."""
     cell = random_cell(seed, tmp_path)
     layout, met = walked(cell, tmp_path / "runs")
+    assert seed != FINE or layout.answer == "yes"
     assert layout.answer == "no" or met == [None] * WALKS
 
 

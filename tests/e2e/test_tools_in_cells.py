@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from e2e.test_check_geometry import looked
+from helpers import carrying_cell
 from helpers.full_cell import merged, skeleton
 from helpers.netbuilder import cpn
 from helpers.situations_of import situations
@@ -135,6 +136,31 @@ def test_a_robot_couples_only_its_own_tools(tmp_path: Path) -> None:
         ("primitive-tool", "`leaveDriver` uncouples tool `driver`, which robot `arm` does not change"),
         ("primitive-tool", "tool `driver` does action `drve`, which no entry of [primitives] has"),
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("feed", "says"),
+    [
+        ('couples = "hand"', "`feed` couples a tool, but device `feeder` has no arm"),
+        ('couples = "hnd"', "`couples` names `hnd`, but there is no `[tools.hnd]`"),
+        (
+            'couples = "hand", takes = "box"',
+            "an action that `takes` a part cannot be one that `couples` a tool, too",
+        ),
+        (
+            'couples = "hand", at = "infeed"',
+            "`at` says where a part comes into the cell or leaves it, but the action does neither",
+        ),
+    ],
+)
+def test_mistakes_are_found_before(feed: str, says: str, tmp_path: Path) -> None:
+    toml = changed(carrying_cell.TOML, 'creates = "box", at = "infeed"', feed)
+    toml = changed(toml, "[places.infeed]", "at = [{ x = 3.0 }]\n[places.infeed]")
+    toml += '[tools.hand]\nmodel = "counterpoint"\nrack = "infeed"\n'
+    d = Diagnostics()
+    cell = carrying_cell.write(tmp_path, toml=toml)
+    assert generate(cell, d, checked=False) is None
+    assert says in [e.message for e in d.errors], [e.message for e in d.errors]
 
 
 # --- over all that the net permits ---------------------------------------------------------------

@@ -63,12 +63,12 @@ def apart(a, b):
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("bend", [0.0, 1e-12, 1e-9, 1e-8, 1e-7])
+@pytest.mark.parametrize("bend", [0.0, 1e-9, 1e-8])
 def test_all_arms_are_found_whatever_rounding_makes_of_the_bend(model, bend):
     """Each position of axes 1 to 3 (of seven axes 1 to 4), where half of them had none."""
     k, random = known(model), np.random.default_rng(7)
     first, _ = k.wrist_axes
-    for _ in range(25):
+    for _ in range(12):
         q = random.uniform(np.maximum(k.arm.lower, -2.5), np.minimum(k.arm.upper, 2.5))
         q[first + 1] = bend
         angle = k.arm_angle_of(q)
@@ -167,7 +167,7 @@ def check_way(k, q, move):
     assert np.abs(said - np.gradient(path, times, axis=0)[::15])[1:-1].max() < 0.1
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(
     st.sampled_from(MODELS),
     st.integers(0, 2**32),

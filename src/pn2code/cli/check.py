@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     FormatOption,
     InputOption,
     IntBitsOption,
+    JobsOption,
     JsonOption,
     MaxSecondsOption,
     MaxStatesOption,
@@ -78,6 +79,7 @@ def check(
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     max_seconds: MaxSecondsOption = None,
     max_states: MaxStatesOption = None,
+    jobs: JobsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.
@@ -100,10 +102,11 @@ def check(
             int_bits=int_bits,
             max_seconds=max_seconds,
             max_states=max_states,
+            jobs=jobs,
             form=form,
         )
         return
-    given = {"max-states": max_states}
+    given = {"max-states": max_states, "jobs": jobs}
     _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full, **given)
     d = Diagnostics()
     with in_time(max_seconds, net, "the net was checked", form):

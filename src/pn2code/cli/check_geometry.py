@@ -36,6 +36,7 @@ def check_geometry(
     int_bits: int,
     max_seconds: float | None,
     max_states: int | None,
+    jobs: int | None,
     form: Format,
 ) -> None:
     """Looks at all moves and pairs of a cell, prints what is found, and leaves with its exit code."""
@@ -49,7 +50,7 @@ def check_geometry(
     folder = traces or Path(f"{opened.flat.name}.geometry")
     is_new = not folder.exists()
     deadline = Deadline.of_command(None)
-    limits = Limits(max_states=max_states, deadline=deadline, threads=cores())
+    limits = Limits(max_states=max_states, deadline=deadline, threads=jobs or cores())
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
         with in_time(max_seconds, path, late, form), playing(form), line as progress:

@@ -109,7 +109,7 @@ class Asking:
             with self.deadline.share(UNFOLDING if has_formulas else 1.0).enforced():
                 tables = unfolded(net)
         except (TimeIsOverError, TooLargeError) as error:
-            self.say(f"not unfolded: {error or 'it takes too long'}")
+            self.say(f"not unfolded: {str(error) or 'it takes too long'}")
             if game is not None and without is not None:
                 yield from self._answers(without, self.deadline, game)
             yield from self._rest()

@@ -125,7 +125,7 @@ def examine(
 
     stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
     folder.mkdir(parents=True, exist_ok=True)
-    options = Options(folder, stem, opened.initial, explore, stage)
+    options = Options(folder, stem, opened.initial, explore, stage, limits.threads)
     found = []
     for name, cell in cells:
         looking = Look(graph, cell, options, name)

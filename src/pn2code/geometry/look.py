@@ -45,6 +45,7 @@ class Options:
         initial: markings that files gave, for the headers of traces.
         explore: explores a changed cell; None: no proposals.
         stage: hears in words what is done.
+        jobs: processes that sweep.
     """
 
     folder: Path
@@ -52,6 +53,7 @@ class Options:
     initial: str | None = None
     explore: Explore | None = None
     stage: Callable[[str], None] = lambda _text: None
+    jobs: int = 1
 
 
 @frozen(eq=False)
@@ -160,13 +162,32 @@ class Look:
         rows: dict[tuple[int, str], Move] = {}
         looked: set[tuple[int, str]] = set()
         handled: dict[tuple[str, str, str], Move] = {}
+        activities = (self.doing.activities[number] for number, _ in found.activities)
+        legs = ((x, c.load(x.robot)) for a in activities for x, c in a.legs)
+        with self.comparison.moves_ahead(filter(self._is_looked_at, legs), self.options.jobs):
+            self._each_move(found, rows, looked, handled)
+        return [*self._at_start(), *rows.values(), *handled.values()]
+
+    @staticmethod
+    def _is_looked_at(moved: tuple[Leg, Load]) -> bool:
+        """An arm at rest with nothing in its tool is no move, but for where it rests at all."""
+        leg, load = moved
+        return leg.fault is not None or leg.is_moving or bool(load) or leg.command is None
+
+    def _each_move(
+        self,
+        found: Situations,
+        rows: dict[tuple[int, str], Move],
+        looked: set[tuple[int, str]],
+        handled: dict[tuple[str, str, str], Move],
+    ) -> None:
         for (number, _element), met in found.activities.items():
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
                 load = contents.load(leg.robot)
                 key = (leg.number, spots(load))
                 is_at_rest = leg.fault is None and not leg.is_moving
-                if key in looked or (is_at_rest and not load and leg.command is not None):
+                if key in looked or not self._is_looked_at((leg, load)):
                     continue
                 looked.add(key)
                 row = self._move(found, leg, load, met)
@@ -181,7 +202,6 @@ class Look:
                 key_ = (row.transition, row.command, row.begins)
                 if key_ not in handled or (handled[key_].answer, row.answer) == ("unknown", "no"):
                     handled[key_] = row
-        return [*self._at_start(), *rows.values(), *handled.values()]
 
     def _at_start(self) -> list[Move]:
         """Parts that cannot be where cell.toml puts them."""
@@ -267,20 +287,39 @@ class Look:
     def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
         """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
         met_: dict[tuple[Side, Side], _Meeting] = {}
-        for numbers_, met in found.pairs.items():
-            a, b = (self.doing.activities[n] for n in numbers_)
-            sides = found.sides(a, b, met)
-            if sides in met_ and met_[sides].apart.outcome == "touch":
-                continue
-            for leg, other, apart in self.comparison.activities(a, b):
-                if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
-                    first, second = (_who(found, e)[0] for e in met.elements)
-                    does = (words(leg.command), words(other.command))
-                    robots = (leg.robot, other.robot)
-                    met_[sides] = _Meeting(robots, (first, second), does, apart, met)
-                if apart.outcome == "touch":
-                    break
+        activities = self.doing.activities
+        pairs = [(activities[n], activities[m]) for n, m in found.pairs]
+        all_sides = [
+            found.sides(*pair, met) for pair, met in zip(pairs, found.pairs.values(), strict=True)
+        ]
+
+        def is_open(i: int) -> bool:
+            return all_sides[i] not in met_ or met_[all_sides[i]].apart.outcome != "touch"
+
+        with self.comparison.pairs_ahead(pairs, self.options.jobs, is_open):
+            for i, met in enumerate(found.pairs.values()):
+                if is_open(i):
+                    self._pair(pairs[i], all_sides[i], met, met_, found)
         return dict(zip(met_, self._reported(found, met_.values()), strict=True))
+
+    def _pair(
+        self,
+        pair: tuple[Activity, Activity],
+        sides: tuple[Side, Side],
+        met: Met,
+        met_: dict[tuple[Side, Side], _Meeting],
+        found: Situations,
+    ) -> None:
+        """Notes where two activities do not surely keep apart."""
+        a, b = pair
+        for leg, other, apart in self.comparison.activities(a, b):
+            if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
+                first, second = (_who(found, e)[0] for e in met.elements)
+                does = (words(leg.command), words(other.command))
+                robots = (leg.robot, other.robot)
+                met_[sides] = _Meeting(robots, (first, second), does, apart, met)
+            if apart.outcome == "touch":
+                break
 
     def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""

@@ -124,7 +124,7 @@ class Colsets:
                 codes.TYPE_TOO_LARGE,
                 f"a value of colour set `{spec.name}` has {parts:,} parts, more than the {MAX_TYPE_NODES:,} allowed",
                 spec,
-                hint="products of products double with each: is one of its components meant to be a list?",
+                hint="products of products multiply: is one of its components meant to be a list?",
             )
             return None, []
         if self._datatypes:
