@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import random
+import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 
 import pytest
 
 from helpers.coloured_families import FAMILIES, shared_memory
 from helpers.coloured_nets import ColouredNet, all_, less, times
 from helpers.examined import examined
-from helpers.random_tables import Graph
+from helpers.random_coloured import random_coloured
+from helpers.random_linear import holds
+from helpers.random_tables import Graph, random_condition
 from pn2code.base.deadline import Deadline
 from pn2code.contest.asking import Asking, is_large
-from pn2code.contest.engine import engine
+from pn2code.contest.engine import Answer, Said, engine
 from pn2code.contest.formulas import AtMost, Constant, Fireable, Op, Tokens, Truth
+from pn2code.contest.playing import Play, Sought, follow
 from pn2code.contest.portfolio import answers
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
@@ -95,6 +101,38 @@ def test_no_answer_is_wrong(program: Path, family: str, tmp_path: Path) -> None:
     found = answers(program, tables, lines, seconds=SHORT_S, game=game)
     for answer in found:
         assert answer.value == expected[answer.name], answer
+
+
+def test_runs_decide_formulas_of_one_operator(tmp_path: Path) -> None:
+    """With dead initial markings among the nets: nothing comes after these, in linear time they themselves."""
+    decided, dead = 0, 0
+    for seed in range(24):
+        draw = random.Random(seed)
+        made = random_coloured(draw)
+        graph = Graph.of(made.tables(), 60)
+        if graph is None or not graph.markings[0]:
+            continue
+        dead += not graph.successors[0]
+        net = loaded(made, tmp_path)
+        game = Game(net)
+        tables = uncoloured(net, game)
+        assert tables is not None
+        for number in range(16):
+            of, operator = draw.choice("EA"), draw.choice("XFGU")
+            parts = [random_condition(draw, tables, 1) for _ in range(1 + (operator == "U"))]
+            f = Op(of, (Op(operator, tuple(parts)),))
+            is_linear = of == "A" and number % 2 == 1
+            said: Said = SimpleQueue()
+            sought = Sought(0, lambda sight: False, followed=follow(tables, f), is_linear=is_linear)
+            play = Play(game, partial(list, [sought]), said, time.monotonic() + LONG_S)
+            for is_even in (False, True):
+                play.play(20, is_even=is_even)
+            expected = not holds(graph, f) if is_linear else 0 in graph.where(f)
+            while not said.empty():
+                answer = said.get()
+                assert isinstance(answer, Answer) and answer.value == expected, (seed, f)
+                decided += 1
+    assert decided > 50 and dead
 
 
 def test_what_cannot_be_unfolded_is_asked_without_colours(program: Path, tmp_path: Path) -> None:
