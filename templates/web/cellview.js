@@ -3,8 +3,10 @@
 
 import { upperBound } from "./course.js";
 import { colour, el } from "./dom.js";
+import { FIELD, distance, look, ride, spin } from "./eye.js";
 import { Path, frames, valueAt } from "./kinematics.js";
 import { Gaps } from "./gaps.js";
+import { armAt, wayAt } from "./picking.js";
 import { CellScene, place } from "./scene3d.js";
 import { conditionColour, trail } from "./trails.js";
 import { Thrift, drawsInSoftware } from "./thrift.js";
@@ -12,7 +14,6 @@ import { Zones } from "./zones.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
 
-const FIELD = 38;
 /** Where little may be drawn: when all of the picture is there at rest, and how fine it is then. */
 const FINE_MS = 400;
 const FINE = 2;
@@ -22,8 +23,6 @@ const COARSE = 0.75;
 const PIXEL_STEPS = 2;
 /** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
 const LIVE_SAMPLES = 600;
-/** How near to a path a click must be (CSS pixels). */
-const REACH_PX = 6;
 const PATHS_MS = 500;
 
 export class CellView {
@@ -46,6 +45,8 @@ export class CellView {
     this.onTurn = null;
     /** Whether it is just being turned by another view. */
     this.isLed = false;
+    /** @type {import("./eye.js").Eye} camera and controls */
+    this.eye = { camera: null, controls: null };
     this.buttons = el("div", { class: "views", role: "group", "aria-label": "Views" });
     this.pathsButton = el("button", {
       class: "toggle", "aria-pressed": "true", text: "Paths", title: "Paths of the TCPs, coloured by conditioning (P)",
@@ -99,6 +100,7 @@ export class CellView {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.screenSpacePanning = true;
+    this.eye = { camera: this.camera, controls: this.controls };
     this.controls.addEventListener("change", () => this.turned());
     canvas.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => {
       this.mounted = -1;
@@ -143,14 +145,14 @@ export class CellView {
     const centre = box.getCenter(new THREE.Vector3());
     const size = box.getSize(new THREE.Vector3());
     const radius = size.length() / 2;
-    const look = (/** @type {number} */ azimuth, /** @type {number} */ elevation, /** @type {number} */ fit) => () => {
-      this.look(centre, azimuth, elevation, this.distance(radius) * fit);
+    const from = (/** @type {number} */ azimuth, /** @type {number} */ elevation, /** @type {number} */ fit) => () => {
+      look(this.eye, centre, azimuth, elevation, distance(this.camera, radius) * fit);
     };
     /** @type {[string, () => void, number][]} */
     this.views = [
-      ["Overview", look(-42, 24, 0.82), -1],
-      ["Behind", look(50, 20, 0.86), -1],
-      ["Above", look(-90, 89.5, 0.9), -1],
+      ["Overview", from(-42, 24, 0.82), -1],
+      ["Behind", from(50, 20, 0.86), -1],
+      ["Above", from(-90, 89.5, 0.9), -1],
       ["Tools", () => this.lookAtTools(-28, 16), -1],
     ];
     this.run.cell.robots.forEach((/** @type {any} */ r, /** @type {number} */ i) => {
@@ -160,29 +162,6 @@ export class CellView {
       ...this.views.map(([name], i) =>
         el("button", { text: name, title: `View ${i + 1} (key ${i + 1})`, onclick: () => this.view(i) })),
     );
-  }
-
-  /** @param {number} radius */
-  distance(radius) {
-    const half = Math.min(FIELD, (2 * 180 * Math.atan(Math.tan((FIELD * Math.PI) / 360) * this.camera.aspect)) / Math.PI);
-    return radius / Math.sin((half * Math.PI) / 360);
-  }
-
-  /**
-   * @param {any} target
-   * @param {number} azimuth
-   * @param {number} elevation
-   * @param {number} distance
-   */
-  look(target, azimuth, elevation, distance) {
-    const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
-    this.camera.position.set(
-      target.x + distance * Math.cos(e) * Math.cos(a), target.y + distance * Math.cos(e) * Math.sin(a),
-      Math.max(target.z + distance * Math.sin(e), 0.15),
-    );
-    this.camera.up.set(0, 0, 1);
-    this.controls.target.copy(target);
-    this.controls.update();
   }
 
   /**
@@ -195,7 +174,7 @@ export class CellView {
     for (const tip of tips) middle.add(tip);
     middle.divideScalar(tips.length);
     const spread = Math.max(...tips.map((/** @type {any} */ p) => p.distanceTo(middle)));
-    this.look(middle, azimuth, elevation, 1.7 + 2.2 * spread);
+    look(this.eye, middle, azimuth, elevation, 1.7 + 2.2 * spread);
   }
 
   /** @param {number} number from 0 */
@@ -236,18 +215,11 @@ export class CellView {
     this.request();
   }
 
-  /** The camera rides on a robot's tool, and looks along it. */
   mount() {
     const at = this.mounted;
     const tcp = this.frames?.[at]?.[this.run.cell.robots[at].tcp];
     if (!tcp) return;
-    const z = new THREE.Vector3(tcp[2], tcp[6], tcp[10]);
-    const x = new THREE.Vector3(tcp[0], tcp[4], tcp[8]);
-    const p = new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
-    this.camera.position.copy(p).addScaledVector(z, -0.9).addScaledVector(x, 0.42);
-    this.camera.up.set(0, 0, 1);
-    this.controls.target.copy(p).addScaledVector(z, 0.1);
-    this.camera.lookAt(this.controls.target);
+    ride(this.eye, tcp);
   }
 
   /**
@@ -259,66 +231,17 @@ export class CellView {
     if (Math.hypot(e.clientX - x, e.clientY - y) > 4) return; // the view was turned
     const box = this.renderer.domElement.getBoundingClientRect();
     const at = new THREE.Vector2(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2);
-    const way = this.hasPaths ? this.wayAt(at, box) : null;
-    const robot = way ? way.robot : this.armAt(at);
+    const way = this.hasPaths ? wayAt(this.camera, this.trails ?? [], at, box, this.t) : null;
+    const robot = way ? way.robot : armAt(this.camera, this.cell, at);
     if (robot >= 0) this.actions.onArm(robot, way ? way.t : this.t);
-  }
-
-  /**
-   * The sample of a path that is nearest to a point of the picture (from -1 to 1), if one is near.
-   * @param {any} at
-   * @param {DOMRect} box
-   */
-  wayAt(at, box) {
-    /** @type {{robot: number, t: number} | null} */
-    let found = null;
-    let least = REACH_PX;
-    const point = new THREE.Vector3();
-    this.camera.updateMatrixWorld();
-    for (const [robot, trail] of (this.trails ?? []).entries()) {
-      for (let i = 0; i < (trail?.count ?? 0); i++) {
-        point.fromArray(trail.points, 3 * i).project(this.camera);
-        if (Math.abs(point.z) > 1) continue;
-        // Of those at one place the one that is nearest in time counts.
-        const away = Math.hypot((point.x - at.x) * box.width, (point.y - at.y) * box.height) / 2 + Math.abs(trail.t[i] - this.t) * 1e-3;
-        if (away >= least) continue;
-        least = away;
-        found = { robot, t: trail.t[i] };
-      }
-    }
-    return found;
-  }
-
-  /**
-   * The arm at a point of the picture, before which nothing stands; -1: none.
-   * @param {any} at
-   */
-  armAt(at) {
-    const ray = new THREE.Raycaster();
-    ray.setFromCamera(at, this.camera);
-    const groups = this.cell?.scene.children.filter((/** @type {any} */ c) => c.isGroup && c.visible);
-    const [hit] = ray.intersectObjects(groups, true);
-    return this.cell?.robots.findIndex((/** @type {any} */ r) => r.links.includes(hit?.object.parent)) ?? -1;
   }
 
   /** @param {KeyboardEvent} e */
   key(e) {
-    const spin = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
-    const nearer = { "+": 0.87, "=": 0.87, "-": 1.15 }[e.key];
-    if (!spin && !nearer) return;
+    if (!spin(this.eye, e.key)) return;
     e.preventDefault();
     e.stopPropagation();
     this.mounted = -1;
-    const way = this.camera.position.clone().sub(this.controls.target);
-    const sphere = new THREE.Spherical().setFromVector3(new THREE.Vector3(way.y, way.z, way.x));
-    if (spin) {
-      sphere.theta += spin[0] * 0.1;
-      sphere.phi = Math.min(Math.max(sphere.phi - spin[1] * 0.08, 0.05), 3.0);
-    }
-    sphere.radius *= nearer ?? 1;
-    const moved = new THREE.Vector3().setFromSpherical(sphere);
-    this.camera.position.set(moved.z, moved.x, moved.y).add(this.controls.target);
-    this.controls.update();
     this.request();
   }
 

@@ -84,3 +84,18 @@ export function drawChart(c, axis, chart, y, w) {
     c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 21 + i * LABEL);
   });
 }
+
+/**
+ * Curves have new values: their last ones are to be seen, too.
+ * @param {any[]} drawn
+ */
+export function growCharts(drawn) {
+  for (const chart of drawn) {
+    for (const curve of chart.curves) {
+      const v = curve.v[curve.v.length - 1] * chart.scale;
+      if (!Number.isFinite(v)) continue;
+      chart.low = Math.min(chart.low, Math.max(v * 0.85, 1));
+      chart.high = Math.max(chart.high, v * 1.15);
+    }
+  }
+}

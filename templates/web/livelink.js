@@ -100,6 +100,10 @@ export function addTo(run, update) {
       if (!part) cell.parts.push((part = { name, kind: name.split(".")[0], states: [] }));
       part.states.push(state);
     }
+    if (update.broken) {
+      const { zone: name, ...broken } = update.broken;
+      for (const zone of cell.zones) if (zone.name === name) zone.broken = broken;
+    }
     for (const row of ["pairs", "t", "pair", "distance", "points"]) push(cell.gaps[row], update.gaps[row]);
     const [t, joints] = update.joints;
     for (const [name, q] of Object.entries(joints)) {

@@ -177,7 +177,7 @@ export class NetView {
     this.sheet.replaceChildren(made.root, this.over);
     this.sheet.setAttribute("aria-label", `Page ${this.net.pages[page].name}`);
     this.tokenNodes.clear();
-    this.flights.clear();
+    this.flights.forget();
     this.up.disabled = !this.net.instances[instance].path.includes("/");
     this.prepare(made);
     this.tokens();
@@ -311,7 +311,7 @@ export class NetView {
     if (isNew && came > 0 && came < 40 && !how.isSparing && !isStill()) {
       for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) {
         const occurred = this.course.occurred(i);
-        if (occurred.instance === this.current) this.flights.fly(occurred, this.shown().elements);
+        if (occurred.instance === this.current) this.flights.announce(occurred, this.shown().elements);
       }
     }
   }

@@ -229,6 +229,24 @@ class TestPlaying:
                 browser.page.get_by_role("tab", name=name, exact=True).click()
                 assert complaints(browser) == [], name
 
+    def test_dots_start_after_the_picture_of_their_step(self, browser: Page) -> None:
+        seen = browser.ask("""async () => {
+            const { net, link } = play.page, { flights } = net, found = [];
+            const note = () => found.push([flights.waiting.length, flights.ways.size]);
+            const hear = link.hear.bind(link);
+            link.hear = said => { hear(said); note(); };
+            document.querySelector(".sheet .enabled").dispatchEvent(new MouseEvent("click", { bubbles: true }));
+            while (!found.length) await new Promise(requestAnimationFrame);
+            await new Promise(requestAnimationFrame);
+            await new Promise(requestAnimationFrame);
+            note();
+            const times = [...flights.ways].map(way => way.effect.getTiming());
+            return { found, delays: times.map(t => t.delay), lasts: times.map(t => t.duration) };
+        }""")
+        [first, *_, last] = seen["found"]
+        assert first == [1, 0] and last[0] == 0 and last[1] >= 2
+        assert set(seen["delays"]) == {0} and len(set(seen["lasts"])) == 1
+
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:
         browser.page.keyboard.press("Space")
         at(browser, 1)

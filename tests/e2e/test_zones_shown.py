@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 
 from helpers.browser import launched, opened
 from helpers.door_cell import NET, TOML, door_cell
+from helpers.lively import running
 from helpers.robot_cells import nowhere
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
@@ -110,4 +112,27 @@ def test_a_broken_zone_is_lit_on_the_page_when_it_is_broken(tmp_path: Path) -> N
         assert shown.ask(LABELS) == [words, "far"]
         assert shown.ask(COLOURS) == ["d55e00", "0072b2"]
         assert words in shown.ask("() => replay.page.cell.legend.textContent")
+        assert not shown.errors
+
+
+@pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
+def test_a_zone_is_lit_on_the_live_page_as_soon_as_it_is_broken(tmp_path: Path) -> None:
+    folder = door_cell(tmp_path / "cell", NET, TOML + FRONT)
+    with (
+        running(folder, tmp_path / "run", "--speed", "0.5") as run,
+        launched() as browser,
+        opened(browser, viewport=SMALL) as shown,
+    ):
+        shown.page.goto(run.url)
+        shown.page.wait_for_selector("body[data-ready=true]")
+        shown.page.get_by_text("The run has ended").wait_for()
+        shown.wait("live.page.clock.t >= live.page.run.end - 1e-9")
+        assert shown.ask(COLOURS.replace("replay", "live")) == ["d55e00", "0072b2"]
+        assert run.wait()[0] == 1
+        summary = json.loads((tmp_path / "run/summary.json").read_text(encoding="utf-8"))
+        [zone, _] = shown.ask("() => live.page.run.cell.zones")
+        assert zone["broken"] == summary["zones"]["front"]
+        shown.ask("() => live.seek(0)")
+        assert shown.ask(COLOURS.replace("replay", "live")) == ["e69f00", "0072b2"]
         assert not shown.errors

@@ -195,10 +195,7 @@ def _comparison(
     if len(names) > 1:
         key = attrgetter(*names)
     elif names:
-        get = attrgetter(*names)
-
-        def key(item: Any) -> Any:
-            return (get(item),)
+        return _comparison_of_one(attrgetter(*names))
     else:
 
         def key(item: Any) -> Any:
@@ -209,6 +206,20 @@ def _comparison(
 
     def hashed(self: Any) -> int:
         return hash(key(self))
+
+    return equal, hashed
+
+
+def _comparison_of_one(
+    get: Callable[[Any], Any],
+) -> tuple[Callable[[Any, object], bool], Callable[[Any], int]]:
+    def equal(self: Any, other: object) -> bool:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return bool((get(self),) == (get(other),))  # as tuples: what is no number is itself
+
+    def hashed(self: Any) -> int:
+        return hash((get(self),))
 
     return equal, hashed
 

@@ -209,8 +209,10 @@ def _write(chapters: list[Chapter], subject: list[tuple[str, str]], net: Path, o
     """The first page, the table of traceability and the hashes."""
     from pn2code.base.whole_file import whole_file
     from pn2code.dossier import hashes, origin, traceability
+    from pn2code.dossier.listing import LISTING, listing
     from pn2code.dossier.page import Facts, index
-    from pn2code.dossier.steps import PROGRAMS
+    from pn2code.dossier.pictures import pictures
+    from pn2code.dossier.steps import NETS, PROGRAMS
 
     runs = [
         r
@@ -223,17 +225,21 @@ def _write(chapters: list[Chapter], subject: list[tuple[str, str]], net: Path, o
     elements = (
         traceability.read(out / PROGRAMS, [out / run for run in runs]) if has_programs else ()
     )
+    title = net.resolve().name
     if elements:
+        (out / LISTING).write_text(listing(title, out / PROGRAMS, elements), encoding="utf-8")
         (out / TABLE).write_text(traceability.table(elements, runs), encoding="utf-8")
     results = [p for p in out.rglob("*") if p.name not in (INDEX, SUMS)]
     rows = hashes.of_files(out, results)
     facts = Facts(
-        title=net.resolve().name,
+        title=title,
         written=origin.date(),
         versions=origin.versions(),
         subject=subject,
         results=rows,
         runs=runs,
+        pictures={run: pictures(out, run) for run in runs},
+        drawn=traceability.drawn(out / NETS),
         elements=elements,
     )
     with whole_file(out / INDEX) as beside:

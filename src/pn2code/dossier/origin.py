@@ -7,10 +7,15 @@ import platform
 import shlex
 import subprocess
 import time
+from contextlib import suppress
 from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
 
 import pn2code
 from pn2code.toolchain.build import find_compiler
+
+PACKAGES = ("numpy", "pybullet", "matplotlib")
+"""On which the answers of runs and of the geometry rest; those that are there are named."""
 
 
 def date() -> str:
@@ -27,6 +32,9 @@ def versions() -> list[tuple[str, str]]:
         ("Python", platform.python_version()),
         ("on", f"{platform.system()} {platform.machine()}"),
     ]
+    for name in PACKAGES:
+        with suppress(PackageNotFoundError):
+            found.append((name, version(name)))
     compiler = find_compiler()
     if compiler is not None:
         said = subprocess.run(

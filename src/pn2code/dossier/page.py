@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.dossier.findings import NO, NOTED, OPEN, YES, Chapter, worst
+from pn2code.dossier.listing import LISTING
 from pn2code.dossier.traceability import Element, by_line
 from pn2code.verify.report.html import page
 
@@ -23,6 +24,8 @@ class Facts:
         subject: name and SHA-256 of each file that the cell consists of.
         results: the same of what was written.
         runs: folders of runs with a replay page.
+        pictures: of each run, file and what it shows.
+        drawn: anchors in the drawing of the net, by ids.
         elements: of the net, with their code; (): no programs were made.
     """
 
@@ -32,7 +35,25 @@ class Facts:
     subject: Sequence[tuple[str, str]]
     results: Sequence[tuple[str, str]]
     runs: Sequence[str]
+    pictures: Mapping[str, Sequence[tuple[str, str]]]
+    drawn: Mapping[str, str]
     elements: Sequence[Element]
+
+    @property
+    def leads(self) -> dict[str, str]:
+        """Where a link to a result leads: of a folder, to the first of its files in the table of them."""
+        found: dict[str, str] = {}
+        for name, _ in self.results:
+            folder = name
+            while "/" in folder:
+                folder = folder.rpartition("/")[0]
+                found.setdefault(folder, f"#f{self.firsts[name]}")
+        return found
+
+    @property
+    def firsts(self) -> dict[str, int]:
+        """The position of each file in the table of them."""
+        return {name: i for i, (name, _) in enumerate(self.results)}
 
 
 def index(chapters: Sequence[Chapter], facts: Facts) -> str:
@@ -57,6 +78,8 @@ def index(chapters: Sequence[Chapter], facts: Facts) -> str:
         idle=[e for e in transitions if e.occurred and not any(e.occurred)],
         transitions=len(transitions),
         by_line=by_line(facts.elements),
+        number={e: i for i, e in enumerate(facts.elements)},
+        listing=LISTING,
     )
 
 

@@ -15,6 +15,7 @@ from pn2code.base.frozen import frozen
 
 JSON = ".json"
 PROGRAMS = "generated"
+NETS = "nets.html"
 """The folder of the programs."""
 GEOMETRY = "--geometry"
 WAIT_S = 0.1
@@ -113,7 +114,7 @@ def steps(
     )
     return (
         check,
-        Step("The drawing", "draw", (*net, "--output", "nets.html"), "draw.txt", ("nets.html",)),
+        Step("The drawing", "draw", (*net, "--output", NETS), "draw.txt", (NETS,)),
         Step(
             "Verification",
             "verify",

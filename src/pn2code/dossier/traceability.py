@@ -7,8 +7,10 @@ The table goes both ways: by element of the net, and by line of each file.
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -16,6 +18,7 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 
 TRACE = "cell.trace.jsonl"
+_ANCHOR = re.compile(r'<g id="(page-[0-9]+-[0-9]+)" class="[^"]*" data-id="([^"]*)"')
 
 
 @frozen
@@ -30,6 +33,11 @@ class Lines:
     def text(self) -> str:
         """Such as `net.c:10-20`."""
         return f"{self.file}:{self.first}" + (f"-{self.last}" if self.last > self.first else "")
+
+    @property
+    def anchor(self) -> str:
+        """Of the first line, in the page of the programs (`dossier.listing`)."""
+        return f"{self.file}-{self.first}"
 
 
 @frozen
@@ -87,6 +95,20 @@ def _occurrences(trace: Path) -> Counter[str]:
             row = json.loads(line)
             if "transition" in row:
                 found[row["transition"]] += 1
+    return found
+
+
+def drawn(nets: Path) -> dict[str, str]:
+    """Where each element of the net stands in the drawing: anchors by ids.
+
+    Args:
+        nets: the page that `draw` has made; {} where there is none.
+    """
+    if not nets.is_file():
+        return {}
+    found: dict[str, str] = {}
+    for anchor, identity in _ANCHOR.findall(nets.read_text(encoding="utf-8")):
+        found.setdefault(html.unescape(identity), anchor)
     return found
 
 

@@ -139,6 +139,7 @@ class News:
                 "counts": dict(self._counts),
             },
             "verdict": verdict,
+            "broken": picture["broken"],
             "hand": picture.get("hand"),
         }
 

@@ -21,7 +21,7 @@ from pn2code.robot.transforms import Array, inverse, matrix_of
 from pn2code.run.command_words import kind_and_label
 from pn2code.run.engine import Engine, RobotRunner
 from pn2code.run.realtime import RealtimeEngine
-from pn2code.run.record import ActionRecord, PartRecord
+from pn2code.run.record import ActionRecord, PartRecord, RunRecord
 
 Json = dict[str, Any]
 
@@ -130,6 +130,7 @@ class Tap:
             "activity": engine.activity,
             "punctuality": engine.punctuality.described(),
             "left_out": self._left_out,
+            "broken": _broken(record),
             "hand": None if engine.hand is None else engine.hand.told(),
             **more,
         }
@@ -148,7 +149,7 @@ class Tap:
         """Where marks and parts are that have come since the last look: the arms still stand there."""
         record = engine.record
         for i in range(self._seen["actions"], len(record.actions)):
-            self._frames["actions", i] = self._mark(record.actions[i])
+            self._frames["actions", i] = self._mark(record.actions[i], record.parts)
         for i in range(self._seen["parts"], len(record.parts)):
             self._frames["parts", i] = self._part(record.parts[i])
         self._seen = {"actions": len(record.actions), "parts": len(record.parts)}
@@ -163,12 +164,14 @@ class Tap:
             return None
         return arm.T_world_base @ arm.kinematics.forward(q)
 
-    def _mark(self, action: ActionRecord) -> Json | None:
+    def _mark(self, action: ActionRecord, parts: Sequence[PartRecord]) -> Json | None:
         if action.kind != "tool" or action.label not in self._labels:
             return None
         tcp = self._tcp(action.robot)
         if tcp is None:
             return None
+        arm = self._arms[action.robot]
+        tcp = arm.of_tool(cells.tool_in_use(arm, parts, action.end), tcp)
         return {
             "t": action.end,
             "robot": action.robot,
@@ -178,7 +181,7 @@ class Tap:
 
     def _part(self, entry: PartRecord) -> Json:
         change = entry.change
-        state: Json = {"t": entry.t, **cells.put(self._cell, change)}
+        state: Json = {"t": entry.t, **cells.put(self._cell, change, entry.robot)}
         tcp = self._tcp(entry.robot)
         if change.effect == "takes" and tcp is not None:
             state["frame"] = cells.frame(inverse(tcp) @ matrix_of(change.pose))
@@ -186,6 +189,12 @@ class Tap:
         elif change.effect == "removes":
             state["frame"] = None
         return {"name": change.part, "state": state}
+
+
+def _broken(record: RunRecord) -> Json | None:
+    """The zone in which something was too fast, by its name and as `run.json` has it."""
+    found = record.too_fast
+    return None if found is None else {"zone": found.zone, **found.described()}
 
 
 def _supervisor(engine: RealtimeEngine) -> Json:

@@ -672,3 +672,33 @@ def test_a_binding_has_the_zero_of_the_token() -> None:
     assert g.why_disabled(g.marking, element) == "the sign of a zero is not that of the token"
     [element] = g.enabled()
     g.fire(element)
+
+
+@pytest.mark.parametrize(
+    ("taken", "times"), [("n", 1), ("if discrete (1, 1) = 1 then n else n", 2)]
+)
+def test_what_an_element_takes_is_looked_for_once_where_it_is_always_the_same(
+    taken: str, times: int
+) -> None:
+    g = game(
+        f"""
+        place P : INT = 1`1 ++ 1`2
+        place Q : INT = 1`1 ++ 1`2
+        trans T
+          in P : n
+          in Q : {taken}
+        """
+    )
+    looked, own = [], g.enabling.demands
+    g.enabling.demands = lambda t, b, **how: (looked.append(t), own(t, b, **how))[1]  # type: ignore[method-assign]
+    [symbol] = g.net.transitions[0].variables
+    for number in (1, 2):
+        looked.clear()
+        element = BindingElement(0, ((symbol, number),))
+        assert g.why_disabled(g.marking, element) is None
+        again = g.marking
+        g.marking, _ = g.occur(g.marking, element)
+        assert len(looked) == times
+        # Of another marking, or another element, it is not what has just been found.
+        assert g.occur(again, BindingElement(0, ((symbol, number),)))[0] == g.marking
+    assert (text(g, "P"), text(g, "Q")) == ("empty", "empty")

@@ -146,11 +146,21 @@ class Evaluator:
 
     def evaluate(self, exp: core.Exp, environment: Environment) -> Any:
         """The value of an expression in an environment; raises what `run` raises."""
-        return self.run(self._first(exp, environment))
-
-    def _first(self, exp: core.Exp, environment: Environment) -> Task:
-        return Tail(self.step(exp, environment))
-        yield  # makes this a task
+        before = sys.getrecursionlimit()
+        sys.setrecursionlimit(max(before, _RECURSION_LIMIT))
+        try:
+            try:
+                found = self.step(exp, environment)
+            except RecursionError:
+                raise MlLimit("a value is nested too deeply") from None
+            except MemoryError:
+                raise MlLimit("a value needs more memory than there is") from None
+            if type(found) is GeneratorType:
+                return self._run(found)
+            self.spent += 1
+            return found
+        finally:
+            sys.setrecursionlimit(before)
 
     def apply(self, function: Value, argument: Value) -> Value:
         """The value of a function at an argument."""

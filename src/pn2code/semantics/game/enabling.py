@@ -158,12 +158,14 @@ class Enabling:
 
     Attributes:
         constants: the declared values that patterns of the net name, by symbol; each search begins with them.
+        left: the marking without what the binding takes that `why_disabled` has found enabled last.
     """
 
     def __init__(self, net: FlatNet, evaluator: Evaluator) -> None:
         self.net = net
         self.evaluator = evaluator
         self.colours = evaluator.colours
+        self.left: Marking = Marking(0, ())
         self.constants: Found = {
             s.uid: evaluator.globals[s.uid]
             for t in net.transitions
@@ -432,10 +434,15 @@ class Enabling:
         for demand in sorted(demands, key=lambda d: d.early):
             tokens = places[demand.place]
             if isinstance(tokens, MultiSet):
-                wanted = MultiSet({demand.value: demand.count})
-                if not wanted <= tokens:
+                left = tokens.counts.get(demand.value, 0) - demand.count
+                if left < 0:
                     return demand
-                places[demand.place] = tokens - wanted
+                counts = dict(tokens.counts)
+                if left:
+                    counts[demand.value] = left
+                else:
+                    del counts[demand.value]
+                places[demand.place] = MultiSet(counts)
                 continue
             for _ in range(demand.count):
                 token = tokens.latest(demand.value, demand.early, marking.time)
@@ -443,7 +450,7 @@ class Enabling:
                     return demand
                 tokens = tokens - [token]
             places[demand.place] = tokens
-        return replace(marking, places=tuple(places))
+        return Marking(marking.time, tuple(places), marking.references)
 
     # --- enabled or not --------------------------------------------------------------------------
 
@@ -483,6 +490,7 @@ class Enabling:
         missing = self.take(marking, demands)
         if isinstance(missing, Demand):
             return self.shortage(marking, missing, demands)
+        self.left = missing
         for step in t.plan:
             if isinstance(step, BindTerm):
                 arc = t.arcs[step.arc]

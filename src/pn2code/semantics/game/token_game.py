@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 from pn2code.diagnostics import NOWHERE, Origin
@@ -27,6 +28,7 @@ from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.random import occurrence_of
 from pn2code.semantics.evaluation.references import NOTHING, Held, tracked
+from pn2code.semantics.game.constant import constant_transitions
 from pn2code.semantics.game.enabling import Demand, Enabling, GameError, running
 from pn2code.semantics.game.enabling_cache import EnablingCache
 from pn2code.semantics.game.marking import (
@@ -105,6 +107,8 @@ class Game:
             NOTHING  # what the references hold, as far as occurrences are concerned
         )
         self.start: int | float = 0.0 if net.real_time else 0
+        # The marking without what an element takes that does the same in every marking, and which it was.
+        self._taken: tuple[Marking, Marking, BindingElement] | None = None
         self._has_begun = False
         own = Marking(self.start, tuple(map(self._initial, net.places)))
         self.own_initial_marking = self.with_references(own)
@@ -213,8 +217,12 @@ class Game:
         reason = self.enabling.why_disabled(t, marking, element.binding)
         if reason is None and not self._has_signs_of_tokens(t, marking, element.binding):
             reason = "the sign of a zero is not that of the token"
-        if reason is not None or not priorities:
+        if reason is not None:
             return reason
+        if t.index in self._constant:
+            self._taken = self.enabling.left, marking, element
+        if not priorities:
+            return None
         for other in self.net.transitions:
             if other.priority < t.priority:
                 binding = next(self.enabling.enabled(other, marking), None)
@@ -268,7 +276,7 @@ class Game:
         if t.index in self._assigning:
             self._present = Held(())  # anything, should an exception end this
         binding = {**element.binding, **self.action(t, element.binding)}
-        left = self.enabling.take(marking, self.enabling.demands(t, element.binding))
+        left = self._left(marking, element)
         if isinstance(left, Demand):
             name = self.net.places[left.place].name
             raise GameError(f"place `{name}` lacks tokens when the transition occurs", t.origin)
@@ -280,10 +288,23 @@ class Game:
         for arc in t.arcs:
             if arc.kind is ArcKind.RESET:
                 places[arc.place] = reset(places[arc.place], marking.time)
-        after = replace(left, places=tuple(places))
+        after = Marking(left.time, tuple(places), left.references)
         if t.index in self._assigning:
             after = self.with_references(after)
         return after, BindingElement.make(t, binding)
+
+    @cached_property
+    def _constant(self) -> frozenset[int]:
+        return constant_transitions(self.net)
+
+    def _left(self, marking: Marking, element: BindingElement) -> Marking | Demand:
+        """The marking without what an element takes; what `why_disabled` has just found of it, if it must be that."""
+        if self._taken is not None:
+            left, before, looked = self._taken
+            if before is marking and looked is element:
+                return left
+        t = self.net.transitions[element.transition]
+        return self.enabling.take(marking, self.enabling.demands(t, element.binding))
 
     # --- references --------------------------------------------------------------------------------
 

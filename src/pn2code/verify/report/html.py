@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from pn2code.base.resources import templates_folder
+
+_TICKED = re.compile(r"`([^`]+)`")
 
 
 def script(name: str) -> Markup:
     """A file of `templates/html` as the content of a `script` element."""
     return Markup((templates_folder() / "html" / name).read_text(encoding="utf-8"))
+
+
+def ticked(text: str) -> Markup:
+    """A sentence in which names stand between backticks, with these as code."""
+    return Markup(_TICKED.sub(r"<code>\1</code>", str(escape(text))))
 
 
 def page(template: str, styles: tuple[str, ...], **values: Any) -> str:
@@ -34,5 +42,6 @@ def page(template: str, styles: tuple[str, ...], **values: Any) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    env.filters["ticked"] = ticked
     css = "".join((folder / name).read_text(encoding="utf-8") for name in styles)
     return env.get_template(template).render(css=Markup(css), **values)

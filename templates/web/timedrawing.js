@@ -1,0 +1,262 @@
+// @ts-check
+/** What is seen of the time axis: lanes, messages, events, curves; above them what moves with the moment. */
+
+import { LABEL, LEFT, drawChart } from "./charts.js";
+import { upperBound } from "./course.js";
+import { colour, shorten } from "./dom.js";
+
+/** Height of the axis, and between curves (CSS pixels). */
+export const HEAD = 20;
+export const GAP = 8;
+
+/** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
+const KINDS = /** @type {Record<string, string>} */ ({
+  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", external: "#E69F00", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
+});
+/** On these dark letters can be read. */
+const LIGHT = new Set(["home", "external"]);
+
+/** @typedef {import("./timeline.js").Timeline} Timeline */
+/** @typedef {import("./lanes.js").Lane} Lane */
+
+/**
+ * What stays while the moment moves.
+ * @param {Timeline} view
+ * @param {number} w
+ * @param {number} h
+ */
+export function drawStill(view, w, h) {
+  view.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs") };
+  const c = cleared(view.canvas, w, h);
+  axis(view, c, w, h);
+  view.divide();
+  view.lanes.forEach((lane, i) => drawLane(view, c, lane, HEAD + i * view.lane, w));
+  messages(view, c);
+  view.curves.forEach((/** @type {any} */ chart, /** @type {number} */ i) => drawChart(c, view, chart, HEAD + view.lanes.length * view.lane + GAP + i * (view.curve + GAP), w));
+  events(view, c, h);
+}
+
+/**
+ * What is under way, the messages of this very moment, and the cursor.
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {number} h
+ */
+export function drawMoment(view, c, h) {
+  const { t } = view.clock;
+  c.strokeStyle = view.ink?.text ?? "";
+  c.lineWidth = 1.5;
+  view.lanes.forEach((lane, i) => {
+    for (const bar of lane.bars) {
+      if (bar.start > t || t >= bar.end || bar.kind === "activity") continue;
+      const left = Math.max(view.x(bar.start), LEFT);
+      const width = Math.max(view.x(bar.end) - left, 1.5);
+      if (bar.end > view.from && bar.start < view.to) c.strokeRect(left, HEAD + i * view.lane + 3.5, width, view.lane - 7);
+    }
+  });
+  c.strokeStyle = c.fillStyle = view.ink?.accent ?? "";
+  c.lineWidth = 1;
+  for (const m of view.run.happenings?.messages ?? []) {
+    if (Math.abs(m.t - t) < 1e-6 && m.t >= view.from && m.t <= view.to) arrow(view, c, m, true);
+  }
+  cursor(view, c, h);
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {number} w
+ * @param {number} h
+ */
+function axis(view, c, w, h) {
+  const wanted = (view.to - view.from) / Math.max((w - LEFT) / 90, 1);
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
+  c.fillStyle = view.ink?.faint ?? "";
+  c.strokeStyle = view.ink?.line ?? "";
+  c.lineWidth = 1;
+  c.textAlign = "center";
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const unit = view.run.clock === "seconds" ? " s" : "";
+  for (let t = Math.ceil(view.from / step) * step; t <= view.to + 1e-9; t += step) {
+    const x = Math.round(view.x(t)) + 0.5;
+    c.beginPath();
+    c.moveTo(x, HEAD);
+    c.lineTo(x, h);
+    c.stroke();
+    const label = unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
+    c.fillText(label, Math.min(x, w - 6 - c.measureText(label).width / 2), HEAD / 2);
+  }
+  c.textAlign = "left";
+  c.fillText(view.run.clock === "seconds" ? "" : "step", 8, HEAD / 2);
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {Lane} lane
+ * @param {number} y
+ * @param {number} w
+ */
+function drawLane(view, c, lane, y, w) {
+  const LANE = view.lane;
+  c.fillStyle = view.ink?.text ?? "";
+  c.textAlign = "left";
+  c.fillText(shorten(lane.name, 15), 8, y + LANE / 2);
+  c.save();
+  c.beginPath();
+  c.rect(LEFT, y, w - LEFT, LANE);
+  c.clip();
+  for (const bar of lane.bars) {
+    if (bar.end < view.from || bar.start > view.to) continue;
+    const x = view.x(bar.start);
+    const width = Math.max(view.x(bar.end) - x, 1.5);
+    c.fillStyle = bar.kind === "activity" ? (view.ink?.bar ?? "") : (KINDS[bar.kind] ?? "#444");
+    c.globalAlpha = bar.kind === "activity" ? 0.9 : 1;
+    c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
+    c.globalAlpha = 1;
+    const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
+    if (fits > 2) {
+      c.fillStyle = bar.kind === "activity" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
+      c.fillText(shorten(bar.label, fits), Math.max(x, LEFT) + 4, y + LANE / 2);
+    }
+  }
+  ticks(view, c, lane, y);
+  c.restore();
+}
+
+/**
+ * Marks of the steps, one a pixel at most.
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {Lane} lane
+ * @param {number} y
+ */
+function ticks(view, c, lane, y) {
+  const LANE = view.lane;
+  c.fillStyle = view.ink?.text ?? "";
+  const first = Math.max(upperBound(lane.ticks, view.from) - 1, 0);
+  const last = upperBound(lane.ticks, view.to);
+  const isBare = lane.bars.length === 0;
+  let before = -1;
+  for (let i = first; i < last; ) {
+    const x = Math.round(view.x(lane.ticks[i]));
+    if (x !== before) c.fillRect(x, isBare ? y + 5 : y + LANE - 4, 1, isBare ? LANE - 10 : 4);
+    before = x;
+    i = Math.max(i + 1, upperBound(lane.ticks, view.time(x + 0.5)));
+  }
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ */
+function messages(view, c) {
+  const messages = view.run.happenings?.messages ?? [];
+  const seen = messages.filter((/** @type {any} */ m) => m.t >= view.from && m.t <= view.to);
+  const isCrowded = seen.length > view.width() / 14;
+  c.lineWidth = 1;
+  c.strokeStyle = c.fillStyle = view.ink?.faint ?? "";
+  c.globalAlpha = isCrowded ? 0.3 : 0.6;
+  for (const m of seen) arrow(view, c, m, !isCrowded);
+  c.globalAlpha = 1;
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {any} m message
+ * @param {boolean} hasHead
+ */
+function arrow(view, c, m, hasHead) {
+  const x = Math.round(view.x(m.t)) + 0.5;
+  const [a, b] = [m.from, m.to].map((party) => HEAD + (party + 0.5) * view.lane);
+  const down = b > a ? 1 : -1;
+  c.beginPath();
+  c.moveTo(x, a + down * 7);
+  c.lineTo(x, b - down * 8);
+  c.stroke();
+  if (!hasHead) return;
+  c.beginPath();
+  c.moveTo(x, b - down * 6);
+  c.lineTo(x - 3, b - down * 11);
+  c.lineTo(x + 3, b - down * 11);
+  c.fill();
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {number} h
+ */
+function events(view, c, h) {
+  const rows = [...(view.run.happenings?.events ?? [])];
+  for (const mark of view.run.cell?.marks ?? []) rows.push({ t: mark.t, kind: "mark" });
+  const inks = /** @type {Record<string, string>} */ ({
+    warning: "#E69F00", fault: "#D00000", mark: "#b8860b", part: "#009E73", end: view.ink?.text });
+  for (const event of rows) {
+    const ink = inks[event.kind];
+    if (!ink || event.t < view.from || event.t > view.to) continue;
+    const x = view.x(event.t);
+    c.fillStyle = c.strokeStyle = ink;
+    c.beginPath();
+    if (event.kind === "mark") {
+      c.arc(x, HEAD - 4, 3, 0, 7);
+    } else {
+      c.moveTo(x, HEAD - 1);
+      c.lineTo(x - 4, HEAD - 8);
+      c.lineTo(x + 4, HEAD - 8);
+    }
+    c.fill();
+    if (event.kind === "fault") c.fillRect(x - 0.75, HEAD, 1.5, h);
+  }
+  view.marks.forEach(({ t, text }, i) => {
+    if (t < view.from || t > view.to) return;
+    c.fillStyle = view.ink?.differs ?? "";
+    c.fillRect(view.x(t) - 1, HEAD - 8, 2, h);
+    c.textAlign = view.x(t) > view.width() - 80 ? "right" : "left";
+    c.fillText(text, view.x(t) + (c.textAlign === "left" ? 5 : -5), HEAD + 8 + i * LABEL);
+    c.textAlign = "left";
+  });
+}
+
+/**
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {number} h
+ */
+function cursor(view, c, h) {
+  const x = view.x(view.clock.t);
+  if (x < LEFT - 1) return;
+  c.fillStyle = view.ink?.accent ?? "";
+  c.fillRect(x - 1, HEAD - 6, 2, h);
+  c.beginPath();
+  c.arc(x, HEAD - 6, 5, 0, 7);
+  c.fill();
+  if (view.hover && view.hover.x > LEFT) {
+    c.fillStyle = view.ink?.faint ?? "";
+    c.fillRect(view.hover.x, HEAD, 1, h);
+  }
+}
+
+/**
+ * A canvas of a size in CSS pixels, empty and sharp.
+ * @param {HTMLCanvasElement} canvas
+ * @param {number} w
+ * @param {number} h
+ */
+export function cleared(canvas, w, h) {
+  const ratio = Math.min(devicePixelRatio, 2);
+  if (canvas.width !== Math.round(w * ratio) || canvas.height !== Math.round(h * ratio)) {
+    canvas.width = Math.round(w * ratio);
+    canvas.height = Math.round(h * ratio);
+    canvas.style.width = `${w}px`;
+    canvas.style.height = `${h}px`;
+  }
+  const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.clearRect(0, 0, w, h);
+  c.font = "12px system-ui, sans-serif";
+  c.textBaseline = "middle";
+  return c;
+}
