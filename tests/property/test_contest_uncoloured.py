@@ -11,6 +11,7 @@ from queue import SimpleQueue
 
 import pytest
 
+from helpers import pnml_nets as pnml
 from helpers.coloured_families import FAMILIES, shared_memory
 from helpers.coloured_nets import ColouredNet, all_, less, times
 from helpers.examined import examined
@@ -153,6 +154,24 @@ def test_what_cannot_be_unfolded_is_asked_without_colours(program: Path, tmp_pat
     assert lines("QuasiLiveness") == ["FORMULA QuasiLiveness TRUE"]
     assert lines("StateSpace") == ["CANNOT_COMPUTE"]
     assert said == ["not unfolded: more than 3 places"] * 3
+
+
+def test_a_colour_set_without_bounds_is_no_obstacle(program: Path, tmp_path: Path) -> None:
+    three = '<numberconstant value="3"><integer/></numberconstant>'
+    text = pnml.net(
+        pnml.place("P", "N", pnml.number(1, three)),
+        pnml.place("Q", "N"),
+        pnml.transition("t"),
+        pnml.arc("P", "t", pnml.number(1, pnml.var("n"))),
+        pnml.arc("t", "Q", pnml.number(1, pnml.var("n"))),
+        declarations=pnml.named("N", "<integer/>") + pnml.variable("n", "N"),
+    )
+    net = pnml.flat(text, tmp_path)
+    asking = Asking(
+        program, "QuasiLiveness", tmp_path, Deadline.after(LONG_S), mebibytes=1024, only="", say=print
+    )  # fmt: skip
+    (line,) = asking.of_net(net, lambda net: None)
+    assert line.startswith("FORMULA QuasiLiveness TRUE")
 
 
 def test_small_nets_are_unfolded_at_once(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from pn2code.net.flat import FlatTransition
 from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import MlException, MlLimit
 
 TECHNIQUE = "COLOURED_WALK"
 _STEPS = 200
@@ -140,7 +141,7 @@ class Play(threading.Thread):
                 marking, _ = self.game.occur(
                     marking, BindingElement.make(t, self.draw.choice(found))
                 )
-            except GameError:  # a binding that raises an exception leads nowhere
+            except (GameError, MlException, MlLimit):  # such a binding leads nowhere
                 return
 
     @staticmethod
@@ -186,7 +187,7 @@ class Play(threading.Thread):
                     return
                 try:
                     after, _ = self.game.occur(marking, BindingElement.make(t, binding))
-                except GameError:
+                except (GameError, MlException, MlLimit):
                     continue
                 self.first.append(self._sight(after, self.game.enabled_transitions(after)))
 

@@ -19,6 +19,8 @@ from pn2code.ml.core.terms import Apply, Builtin, Exp, Lit, RecordExp
 from pn2code.net.flat import ArcInscription, ArcKind, FlatNet, FlatTransition, Form
 from pn2code.semantics.evaluation.evaluate import variables
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.colours import NotFinite
+from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.semantics.values.multiset import MultiSet
 
 MOST_VALUES = 2000
@@ -52,7 +54,7 @@ def uncoloured(net: FlatNet, game: Game) -> Tables | None:
                         side[arc.place] = side.get(arc.place, 0) + n
             pre.append({p: n for p, n in sides[0].items() if n})
             post.append({p: n for p, n in sides[1].items() if n})
-    except _VaryingError:
+    except (_VaryingError, MlException, MlLimit, NotFinite):
         return None
     initial = game.own_initial_marking
     return Tables(
