@@ -127,21 +127,20 @@ class Play(threading.Thread):
         for at in range(steps):
             if not self._goes_on():
                 return
-            enabled = self.game.enabled_transitions(marking)
-            self._look(self._sight(marking, enabled), at)
-            if not enabled:
-                return
-            self.draw.shuffle(enabled)
-            t = min(enabled, key=lambda t: count[t.index]) if is_even else enabled[0]
-            count[t.index] += 1
-            found = list(
-                islice(self.game.enabling.enabled(t, marking), self.draw.randint(1, _CHOICES))
-            )
             try:
-                marking, _ = self.game.occur(
-                    marking, BindingElement.make(t, self.draw.choice(found))
+                enabled = self.game.enabled_transitions(marking)
+                self._look(self._sight(marking, enabled), at)
+                if not enabled:
+                    return
+                self.draw.shuffle(enabled)
+                t = min(enabled, key=lambda t: count[t.index]) if is_even else enabled[0]
+                count[t.index] += 1
+                some = islice(
+                    self.game.enabling.enabled(t, marking), self.draw.randint(1, _CHOICES)
                 )
-            except (GameError, MlException, MlLimit):  # such a binding leads nowhere
+                element = BindingElement.make(t, self.draw.choice(list(some)))
+                marking, _ = self.game.occur(marking, element)
+            except (GameError, MlException, MlLimit):  # what raises an exception leads nowhere
                 return
 
     @staticmethod
