@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import os
 import sys
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers import delivered_runtime, remembering_cc, tiny_compiler
+from helpers import delivered_runtime, in_memory, remembering_cc, tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
@@ -22,6 +23,10 @@ from pn2code.toolchain import build, programs
 
 pytest_plugins = ("pace.plugin",)
 ROOT = Path(__file__).resolve().parent.parent
+MOST_PROGRAMS = 2048
+"""Of each host, in the folder where programs are kept from one run to the next (`./dev test`)."""
+PRUNED_EVERY = 64
+"""Programs that are built."""
 
 
 @pytest.fixture(scope="session")
@@ -39,14 +44,20 @@ def shared() -> Path:
     return path
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Where the nets by others must be there (`.ci/run`), nothing is skipped for want of them."""
+    in_memory.begin(config)
     path = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
     missing = [name for name in ("corpus", "semantics-suite") if not (path / name).is_dir()]
     if os.environ.get("PN2CODE_SHARED_NEEDED") and missing:
         raise pytest.UsageError(
             f"PN2CODE_SHARED_NEEDED is set, but {path} has no {' and no '.join(missing)}; set PN2CODE_SHARED"
         )
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Temporary files are looked at only where tests have failed."""
+    in_memory.end(session.config, exitstatus)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -74,16 +85,23 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     is the same as before is not compiled again (`helpers.remembering_cc`).
     """
     folder = common(tmp_path_factory)
-    library = programs._Builder._library
+    library, prune = programs._Builder._library, programs._Builder._prune
+    built = itertools.count()
 
     def one_library(builder: programs._Builder, room: Path, d: Diagnostics) -> bool:
         with alone(folder, builder.library.name):
             return library(builder, room, d)
 
+    def seldom(builder: programs._Builder) -> None:
+        # It looks at all programs that are kept, which takes as long as linking one.
+        if programs.MOST_PROGRAMS != MOST_PROGRAMS or next(built) % PRUNED_EVERY == 0:
+            prune(builder)
+
     with pytest.MonkeyPatch.context() as changed:
         remembering_cc.use(changed, folder, partial(once, tmp_path_factory))
         changed.setattr(programs._Builder, "_library", one_library)
-        changed.setattr(programs, "MOST_PROGRAMS", 512)
+        changed.setattr(programs, "MOST_PROGRAMS", MOST_PROGRAMS)
+        changed.setattr(programs._Builder, "_prune", seldom)
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", (*flags, *tiny_compiler.use(changed)))

@@ -11,6 +11,8 @@
  *     !SIGNAL    the program gets this signal; then the call is made
  *     +SECONDS   of clock_gettime: the monotonic clock shows so many more (or fewer), from then on
  *
+ * FAILING_REACHED=FILE           is made when something happens: without it no rule has come to its call
+ *
  * From the end of `main` on all calls are made as they are, and files may have any length (RLIMIT_FSIZE, as
  * far as it can be raised): what counts branches writes its files then.
  */
@@ -26,6 +28,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/types.h>
 #include <time.h>
 #include <unistd.h>
@@ -91,6 +94,17 @@ static bool is_meant(const char *rule, int number, const char *name, const char 
     return (s_calls[number] >= first) && (s_calls[number] <= last);
 }
 
+/* Tells whoever asks that a rule has come to its call: by a call that no rule is about. */
+static void tell(void)
+{
+    const char *const file = getenv("FAILING_REACHED");
+    if (file != NULL) {
+        const int saved = errno;
+        (void)syscall(SYS_mknodat, -100 /* from the current directory */, file, 0100600 /* a file */, 0);
+        errno = saved;
+    }
+}
+
 /* Whether the call is not to be made; *result is its result then. */
 static bool fails(const char *name, const char *path, long *result)
 {
@@ -99,6 +113,7 @@ static bool fails(const char *name, const char *path, long *result)
     for (int number = 0; (rule != NULL) && (*rule != '\0') && (number < MOST); number++) {
         if (is_meant(rule, number, name, path)) {
             const char *const what = strchr(strchr(rule, ':') + 1, ':') + 1;
+            tell();
             const long value = strtol((strchr("=!", *what) != NULL) ? what + 1 : what, NULL, 10);
             if (*what == '!') {
                 (void)raise((int)value);

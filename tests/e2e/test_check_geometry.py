@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 from tools.geometry.wander import wander
@@ -200,7 +201,15 @@ def test_a_part_that_is_in_something_at_the_start(tmp_path: Path) -> None:
     assert "`[parts.box]` places it, is 15.0 mm deep in `floor`" in bad.problem
 
 
-def test_the_command(tmp_path: Path) -> None:
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is found is looked for once, and told twice."""
+    seen: list[Any] = []
+
+    def once(*asked: Any) -> Any:
+        seen.extend([examine(*asked)] if not seen else [])
+        return seen[0]
+
+    monkeypatch.setattr("pn2code.geometry.check.examine", once)
     cell = meeting_cell(tmp_path / "cell", guarded=False)
     arguments = ["check", "--geometry", str(cell), "-o", str(tmp_path / "runs")]
     result = CliRunner().invoke(app, [*arguments, "--json", "--pictures"])
@@ -246,11 +255,16 @@ def test_no_run_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
         assert (found.of_pairs if len(robots) == 2 else found.of_moves) == "no", met
 
 
-@pytest.mark.parametrize("seed", range(200, 200 + amount(2, 100)))
+FINE = 205
+"""A random cell whose arms keep apart, so that its walks say something."""
+
+
+@pytest.mark.parametrize("seed", [FINE, *range(200, 200 + amount(0, 100))])
 def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     """The same with arms that may take any time for their ways, on random walks."""
     cell = random_cell(seed, tmp_path)
     layout, met = walked(cell, tmp_path / "runs")
+    assert seed != FINE or layout.answer == "yes"
     assert layout.answer == "no" or met == [None] * WALKS
 
 
@@ -282,7 +296,7 @@ def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         result = CliRunner().invoke(app, arguments)
         assert result.exit_code == 3
         assert (
-            "not known: the cell has more states than were looked at, 300,000 at most"
+            "not known: the cell has more states than were looked at, 300,000 unless `--max-states` says more"
             in result.stdout
         )
         assert "`--set`" in result.stdout

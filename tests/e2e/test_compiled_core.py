@@ -354,6 +354,26 @@ NETS: dict[str, str] = {
             out L : make (#1 p) :: bump p :: l
             out P : make 9
     """,
+    "functions that call each other, of which one changes a reference": """
+        net Cell
+          standard
+          globref changed = 0;
+          fun even n = if n > 0 then odd (n - 1) else (changed := !changed + 7; true)
+              and odd n = if n > 0 then even (n - 1) else false;
+          var n, m, k: INT;
+          var b: BOOL;
+          place A : INT = 1`2 ++ 1`4
+          place B : BOOL
+          place C : INT
+          trans T
+            code
+              input (n);
+              output (b, m, k);
+              action let val _ = even n; val x = (!changed, odd (n + 1), !changed) in (#2 x, #1 x, #3 x) end;
+            in A : n
+            out B : b
+            out C : 1`m ++ 1`k
+    """,
     "awkward names": """
         net Cell
           standard

@@ -239,11 +239,13 @@ def test_properties_of_states_have_the_same_answers_with_any_number_of_parts(
     assert by_name["bound Waiting <= 0"]["evidence"]["confirmed"]
 
 
-def test_a_property_of_runs_needs_all_states(tmp_path: Path) -> None:
+def test_a_property_of_runs_is_asked_of_all_states(tmp_path: Path) -> None:
     asked = ("--property", "every fires(Send) is followed by fires(Pack) || fires(Drop)")
-    found = verified(tmp_path, NET, *asked)
+    found = verified(tmp_path / "found", NET, *asked)
     assert found["properties"][0]["answer"] == "yes"
-    assert found["cell"]["reduced"] is False
+    few = verified(tmp_path / "few", NET, *asked, "--max-states", "100", parts=40)
+    assert few["properties"][0]["answer"] == "inconclusive"
+    assert answers(few) == answers(found)
 
 
 @pytest.mark.parametrize(
@@ -274,9 +276,43 @@ def test_an_order_that_does_not_matter(
     assert is_known is None or found["cell"]["reduced"] is is_known
 
 
+@pytest.mark.parametrize(("pallets", "confluence"), [(3, "yes"), (1, "no")])
+def test_an_order_that_does_not_matter_where_there_is_enough_for_all(
+    tmp_path: Path, pallets: int, confluence: str
+) -> None:
+    """Two stations take from the same place: it matters who comes first if there is one pallet only."""
+    net = families.net("pallets", 2, 4)
+    changed = net.replace("place Pallets = 2", f"place Pallets = {pallets}")
+    assert changed != net
+    found = verified(tmp_path, changed, toml=families.toml("pallets", 2))
+    by_name = {c["check"]: c["answer"] for c in found["controller"]}
+    assert by_name["confluence"] == confluence
+    if confluence == "yes":
+        assert found["cell"]["reduced"] and found["cell"]["bounds"] is None
+
+
+def test_a_cell_of_which_only_the_orders_are_too_many_is_counted_for_these(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has 115 states, and more if the supervisor may fire in any order."""
+    monkeypatch.setattr(command, "COUNTS_FROM", 130)
+    net, toml = families.net("zones", 3, 3), families.toml("zones", 3)
+    found = verified(tmp_path / "found", net, toml=toml)
+    whole = verified(tmp_path / "whole", net, "--no-reduction", toml=toml)
+    assert answers(found) == answers(whole)
+    assert found["cell"] == whole["cell"]
+    counted = {
+        c["check"]: "stands for many markings" in str(c["assumes"]) for c in found["controller"]
+    }
+    assert [check for check, is_so in counted.items() if is_so] == [
+        "finite-response",
+        "bounded-response",
+    ]
+
+
 def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
     verdict = judge(
-        120002, tmp_path, mutants=False, wants_medium=False, is_shop=True, only_verdicts=True
+        120002, tmp_path, mutants=False, wants_medium=False, family="shops", only_verdicts=True
     )
     assert verdict.wrong == ()
     reached = ("checks with limits", "properties that hold with limits", "closed nets counted")
@@ -299,6 +335,24 @@ def test_a_property_that_is_not_so_leaves_the_other_answers_as_they_are(tmp_path
     assert [row["answer"] for row in found["properties"]] == ["no", "yes"]
     assert found["cell"]["reduced"] is True
     assert answers(found) == answers(alone)
+
+
+def test_formulas_about_places_of_the_supervisor_are_answered_in_states(tmp_path: Path) -> None:
+    """A property that they do not tell takes nothing from the others, nor from the checks."""
+    texts = {
+        "ltl (tokens(Busy) = 0) U (tokens(Busy) > 0)": "yes",  # before the end, not at the end
+        "ltl G (tokens(Free) = 1 -> (tokens(Free) = 1) U (tokens(Busy, Finished) = 1))": "yes",
+        "every fires(Send) is followed by fires(Heard)": "inconclusive",
+    }
+    asked = [word for text in texts for word in ("--property", text)]
+    alone = verified(tmp_path / "alone", NET, parts=40)
+    found = verified(tmp_path / "found", NET, *asked, "--max-states", "200", parts=40)
+    assert {row["holds"]: row["answer"] for row in found["properties"]} == texts
+    assert answers(found) == answers(alone)
+    assert found["cell"]["reduced"] is alone["cell"]["reduced"] is True
+    assert "stands for many markings" in str(found["properties"][0]["assumes"])
+    whole = verified(tmp_path / "whole", NET, *asked, "--no-reduction")
+    assert {row["answer"] for row in whole["properties"]} == {"yes"}
 
 
 OF_PATHS = (

@@ -29,10 +29,10 @@ BARE = SHUT.replace(
 PULLED = NET.replace("(release (); line above;", "(line above; line bed; release (); line above;")
 
 
-def ran(folder: Path, net: str, backend: str) -> RunResult:
+def ran(folder: Path, net: str, backend: str, toml: str = TOML) -> RunResult:
     d = Diagnostics()
     options = RunOptions(out=folder / "run", backend=backend, checked=False, looks=False)  # type: ignore[arg-type]
-    found = run_cell(door_cell(folder / "cell", net), options, d)
+    found = run_cell(door_cell(folder / "cell", net, toml), options, d)
     assert found is not None, [e.message for e in d.errors]
     return found
 
@@ -80,6 +80,17 @@ def test_what_a_clamp_holds_is_not_pulled_out(tmp_path: Path) -> None:
     record = ran(tmp_path, PULLED, "fake").record
     assert record.verdict == "failed"
     assert "`arm` pulls `blank.1` out of `mill/vice`, which holds it" in record.reason
+
+
+def test_what_a_clamp_holds_does_not_leave_the_cell(tmp_path: Path) -> None:
+    toml = TOML.replace(
+        'action = "mill", duration_s = 2.0',
+        'action = "mill", duration_s = 2.0, removes = "blank", at = "inVice"',
+    )
+    assert toml != TOML
+    record = ran(tmp_path, NET, "fake", toml).record
+    assert record.verdict == "failed"
+    assert "`mill` removes `blank.1` out of `mill/vice`, which holds it" in record.reason
 
 
 def at_once(net: str) -> str:

@@ -84,6 +84,8 @@ LONG = {
     "pn2code conform examples/handover": "the tutorial does the same",
     "pn2code run examples/handover --backend fake": CELLS,
     "pn2code generate examples/handover -o out && make -C out": CELLS,
+    "pn2code verify examples/palletiser": CELLS,
+    "pn2code generate examples/palletiser -o out && make -C out": CELLS,
     "pn2code conform examples/timed --set parts=1 --set orders=1": "the same",
     "pn2code run examples/sorting --backend fake": CELLS,
     "pn2code run examples/shared-zone --backend fake": CELLS,

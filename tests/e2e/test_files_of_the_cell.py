@@ -188,7 +188,7 @@ DATA = """    place told : SAID
 
 
 def with_data(folder: Path, *, alone: bool) -> OpenNet:
-    """The device says data with its flag; the supervisor takes both, or (`alone`) has a use for the data alone."""
+    """The device says data with its flag; the supervisor takes both, or (`alone`) the data first."""
     written(folder, parts=2)
     net = NET.replace("{parts}", "2").replace("{heard}", "k").replace("{done}", "k")
     net = net.replace("    place say : SAID", DATA, 1)
@@ -199,9 +199,9 @@ def with_data(folder: Path, *, alone: bool) -> OpenNet:
     net = net.replace("      in say : k\n", "      in say : k\n      in told : k\n")
     net = net.replace("      out say : k\n", "      out say : k\n      out told : k\n")
     if alone:
-        net = net.replace(
-            "    trans Send\n", "    trans Early\n      in told : k\n    trans Send\n"
-        )
+        early = "    place Seen\n    trans Early\n      in told : k\n      out Seen : ()\n    trans Send\n"
+        net = net.replace("      in told : k\n", "      in Seen : ()\n")
+        net = net.replace("    trans Send\n", early)
     (folder / "cell.cpn").write_bytes(cpn(net))
     data = '[[channel]]\nplace = "told"\nfile = "told.txt"\nkind = "data"\n'
     (folder / "cell.toml").write_text(TOML + data, encoding="utf-8")
@@ -217,11 +217,137 @@ def test_data_that_nobody_takes_without_their_flag_need_no_look_at_files(tmp_pat
     assert counts["files: yes of the cell as well"] == 1
 
 
-def test_data_that_are_taken_without_their_flag_need_one(tmp_path: Path) -> None:
+def test_data_that_are_taken_before_their_flag_need_none_either(tmp_path: Path) -> None:
     net = with_data(tmp_path, alone=True)
     partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None and by_cell.why_not(partition, Rules()) == ""
+    counts: Counter[str] = Counter()
+    assert list(judged(partition, net.storage, counts, None)) == []
+    assert counts["files: yes of the cell as well"] == 1
+
+
+PEERS = """net cell
+  standard
+  colset SAID = int with 1..2;
+  var k: SAID;
+  var n: INT;
+  page Top
+    place ask : SAID
+    place pass : SAID
+    place say : SAID
+    subst Supervisor = Sup (ask -> ask, say -> say)
+    subst A = First (ask -> ask, pass -> pass)
+    subst B = Second (pass -> pass, say -> say)
+  page Sup
+    place ask port out : SAID
+    place say port in : SAID
+    place Left : INT = 1`2
+    place Free = 1
+    place Busy
+    place Finished
+    trans Send guard [n > 0]
+      in Free : ()
+      in Left : n
+      out Left : n - 1
+      out Busy : ()
+      out ask : 1
+    trans Heard
+      in Busy : ()
+      in say : k
+      out Free : ()
+    trans End
+      in Free : ()
+      in Left : 0
+      out Finished : ()
+  page First
+    place ask port in : SAID
+    place pass port out : SAID
+    place Waiting = 1
+    place Passed
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out pass : k
+      out Passed : ()
+    trans Again
+      in Passed : ()
+      out Waiting : ()
+  page Second
+    place pass port in : SAID
+    place say port out : SAID
+    place Ready = 1
+    place Told : SAID
+    trans Take
+      in Ready : ()
+      in pass : k
+      out Told : k
+    trans Say
+      in Told : k
+      out Ready : ()
+      out say : k
+"""
+
+
+def with_peers(folder: Path, *, is_hasty: bool = False) -> OpenNet:
+    """One device tells the other one what it has been told; `is_hasty`: twice, without waiting."""
+    net = PEERS
+    if is_hasty:
+        net = net.replace("in Passed : ()\n", "in Passed : ()\n      out pass : 2\n")
+    channel = TOML[
+        TOML.index("[[channel]]") : TOML.index("[[channel]]", TOML.index("[[channel]]") + 1)
+    ]
+    toml = TOML[: TOML.index("[primitives]")].replace(
+        '[devices.d]\ninstance = "D"', '[devices.a]\ninstance = "A"\n[devices.b]\ninstance = "B"'
+    )
+    (folder / "cell.cpn").write_bytes(cpn(net))
+    (folder / "cell.toml").write_text(toml + channel.replace("ask", "pass"), encoding="utf-8")
+    return opened(folder)
+
+
+def test_devices_empty_a_file_before_they_tell_each_other_what_it_said(tmp_path: Path) -> None:
+    net = with_peers(tmp_path)
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None and by_cell.why_not(partition, Rules()) == ""
+    counts: Counter[str] = Counter()
+    assert list(judged(partition, net.storage, counts, None)) == []
+    assert counts["files: yes of the cell as well"] == 1
+
+
+def test_a_cell_that_is_large_as_it_runs_is_not_looked_at_with_its_files_first(
+    tmp_path: Path,
+) -> None:
+    net = with_peers(tmp_path)
+    partition = divide(net.flat, net.config, Diagnostics())
     assert partition is not None
-    assert "are acted on alone" in by_cell.why_not(partition, Rules())
+    limits = Limits(threads=1, traces=0, turns_from=command.TURNS_FROM)
+    run = check.Run(limits, Diagnostics(), ExploreOptions(quick=True))
+    small = check.whole(partition, net.storage, run, Rules(), running_states=check.LARGE)
+    large = check.whole(partition, net.storage, run, Rules(), running_states=check.LARGE + 1)
+    assert (small.answer, small.reduced) == ("yes", False)
+    assert (large.answer, large.reduced) == ("yes", True)
+    assert large.nodes < small.nodes
+
+
+def test_an_exchange_says_that_it_does_not_know_of_messages_between_devices(tmp_path: Path) -> None:
+    net = with_peers(tmp_path)
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    run = check.Run(Limits(max_states=1, threads=1), Diagnostics(), ExploreOptions(quick=True))
+    answer = check.exchange(partition, 1, run, Rules())
+    assert "no crash harms messages of pass.txt, between two robots" in answer.assumes
+
+
+def test_a_device_that_writes_to_the_file_of_another_one_too_early_is_a_fault(
+    tmp_path: Path,
+) -> None:
+    net = with_peers(tmp_path, is_hasty=True)
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    run = check.Run(Limits(threads=1, traces=0), Diagnostics(), ExploreOptions(quick=True))
+    answer = check.whole(partition, net.storage, run, Rules())
+    assert answer.answer == "no" and "two robots" not in answer.assumes
+    assert any("a has a message for pass.txt" in line for e in answer.evidence for line in e.lines)
+    assert by_cell.shown(partition, Rules(), net.storage, run.limits, run.options) is None
 
 
 def test_whoever_would_speak_after_the_end_is_noticed(tmp_path: Path) -> None:
@@ -258,7 +384,7 @@ def test_other_rules_are_looked_at_with_the_files(tmp_path: Path) -> None:
     shown = by_cell.Shown(1, 1, 1, 1)
     run = check.Run(Limits(threads=1, traces=0), Diagnostics(), ExploreOptions(quick=True))
     answer = check.whole(
-        partition, net.storage, run, Rules(checks_empty=False, renames=False), (), shown
+        partition, net.storage, run, Rules(checks_empty=False, renames=False), shown
     )
     assert answer.nodes > 1 and not answer.reduced
 

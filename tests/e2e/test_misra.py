@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import shutil
 from collections import Counter
 from pathlib import Path
@@ -9,9 +10,23 @@ from pathlib import Path
 import pytest
 from tools import misra
 
+from helpers.remembered import remembered
+
 
 def test_what_is_committed(root: Path) -> None:
-    required, advisory = misra.findings(root / "generated" / "riveting")
+    folder = root / "generated" / "riveting"
+    files = sorted(path for path in folder.rglob("*") if path.suffix in (".c", ".h"))
+    own = (folder / "Makefile", Path(misra.__file__), misra.ADDON)
+    assert {folder / name for name in misra.SOURCES} <= {*files}
+
+    def look() -> list[list[tuple[str, int]]]:
+        required, advisory = misra.findings(folder)
+        return [[("/".join(of), n) for of, n in required.items()], [*advisory.items()]]
+
+    version = importlib.metadata.version("cppcheck-py")
+    found = remembered("misra", [*own, *files, version], look)
+    required = Counter({tuple(of.split("/", 1)): n for of, n in found[0]})
+    advisory = Counter(dict(found[1]))
 
     assert (
         advisory["2.5"] > 0

@@ -137,3 +137,39 @@ def test_runs_are_found_when_the_memory_is_full(tmp_path: Path) -> None:
     *violated, open_ = said["properties"]
     assert all(p["answer"] == "no" and p["evidence"]["confirmed"] for p in violated), done.stderr
     assert (open_["answer"], open_["why"]) == ("inconclusive", "the limit of memory was reached")
+
+
+ENDLESS = """
+net Endless
+  standard
+  var n: INT;
+  page Top
+    place Count : INT = 1`0
+    trans Up
+      in Count : n
+      out Count : if n > 3 then 1 div (n - n) else n + 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("states", "text", "answer"),
+    [
+        (4, "ctl EX EX EX !dead", "yes"),  # the last one leads out of the part
+        (4, "ctl EX EX EX dead", "no"),
+        (4, "ctl EX EX EX EX !dead", "inconclusive"),
+        (
+            5,
+            "ctl EX EX EX EX !dead",
+            "inconclusive",
+        ),  # what the last one leads to raises an exception
+        (5, "ctl EX EX EX EX dead", "inconclusive"),
+    ],
+)
+def test_what_leads_out_of_a_part_is_not_dead(
+    tmp_path: Path, states: int, text: str, answer: str
+) -> None:
+    net = write(ENDLESS, tmp_path / "endless.cpn")
+    options = ("--max-states", states, "--threads", "1", "--traces", tmp_path, "--json")
+    done = pn2code("verify", net, "--property", text, *options)
+    (found,) = json.loads(done.stdout)["properties"]
+    assert found["answer"] == answer

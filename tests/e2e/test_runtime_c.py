@@ -61,13 +61,14 @@ def test_static_analysis_of_the_runtime_finds_nothing(tmp_path: Path) -> None:
     compiler = shutil.which("gcc")
     if compiler is None:
         pytest.skip("no gcc")
-    sources = [str(next(cnative_folder().rglob(f"src/*/pn_{name}.c"))) for name in RUNTIME]
     include = f"-I{cnative_folder() / 'include'}"
-    done = subprocess.run(
-        [compiler, *WARNINGS, "-fanalyzer", "-O1", "-c", include, *sources],
-        capture_output=True, text=True, check=False, cwd=tmp_path,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    for name in RUNTIME:  # one by one: what has not changed since the last run is remembered
+        source = str(next(cnative_folder().rglob(f"src/*/pn_{name}.c")))
+        done = subprocess.run(
+            [compiler, *WARNINGS, "-fanalyzer", "-O1", include, "-c", source, "-o", "x.o"],
+            capture_output=True, text=True, check=False, cwd=tmp_path,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
 
 
 def test_no_line_is_longer_than_120_columns() -> None:

@@ -18,6 +18,7 @@ from pn2code import division
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.emission import c as emit_c
+from pn2code.geometry import graph
 from pn2code.net.front import load
 from pn2code.properties.meaning import Atom, Property, Response
 from pn2code.timing import verified as seconds
@@ -41,8 +42,10 @@ def verified(folder: Path, *texts: str, options: tuple[str, ...] = ("--durations
     return json.loads(done.stdout)
 
 
-def test_no_program_is_generated_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Who measures commands takes the program of those who checked the supervisor, and the division of the cell."""
+def test_nothing_is_generated_or_explored_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who measures commands takes the graph that those saw who checked the supervisor, and the division of the cell."""
     emit, divide = emit_c.emit, division.divide
     generated: list[str] = []
     divisions: list[str] = []
@@ -58,6 +61,7 @@ def test_no_program_is_generated_twice(tmp_path: Path, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(emit_c, "emit", emitted)
     monkeypatch.setattr(division, "divide", divided)
+    monkeypatch.setattr(graph, "explore", lambda *_: pytest.fail("explored again"))
     assert verified(write(tmp_path))["durations"]["layouts"]
     assert len(generated) == len(set(generated)) == 2
     assert len(divisions) == 1
@@ -250,17 +254,17 @@ def test_a_net_alone_has_no_seconds(tmp_path: Path) -> None:
     assert done.exit_code == 1 and "the net has no time" in done.stderr
 
 
-def test_time_stamps_are_not_followed(tmp_path: Path) -> None:
-    """A watchdog of the net itself: nothing is said in seconds."""
+def test_time_stamps_are_followed(tmp_path: Path) -> None:
+    """A pause of the net itself, before the end."""
     text = NET.replace("AGAIN", "n + 1").replace(
         "colset VERDICT", "colset TUNIT = unit timed;\n  colset VERDICT"
     )
     text = text.replace("    place Done2\n", "    place Done2 : TUNIT\n")
-    text = text.replace("      out Done2 : ()", "      out Done2 : ()@+1")
+    text = text.replace("      out Done2 : ()", "      out Done2 : ()@+3")
     cell = write(tmp_path)
     (cell / "cell.cpn").write_bytes(cpn(text))
-    (said,) = verified(cell, END.format(9))["properties"]
-    assert said["answer"] == "inconclusive" and "time stamps" in said["why"]
+    yes, no = verified(cell, END.format(7), END.format(5))["properties"]
+    assert (yes["answer"], yes["value"], no["answer"]) == ("yes", 6.001, "no")
 
 
 def test_a_false_wait_would_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,8 @@
     net.tables()    # what the contest's examinations ask about
 
 Nothing of the tool's reading, typing, evaluation or unfolding is used. A term is a text (a variable or a constant), a
-number (of an integer range), or a tuple with an operator first; see the functions at the end.
+number (of an integer range), or a tuple with an operator first; see the functions at the end. A number
+belongs to the first range, or to that of ("number", range, n).
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ class ColouredNet:
             return next(s for s in self.sorts if self._is_named(s, term)) if term != DOT else DOT
         if isinstance(term, tuple) and term[0] in ("succ", "pred"):
             return self.sort_of(term[1])
-        return term[1] if isinstance(term, tuple) and term[0] == "part" else None
+        return term[1] if isinstance(term, tuple) and term[0] in ("part", "number") else None
 
     def _is_named(self, sort: str, constant: str) -> bool:
         found = self.sorts[sort]
@@ -116,6 +117,8 @@ class ColouredNet:
                 values = self.values(self.sort_of(of) or "")
                 at = values.index(self.one(of, env))
                 return values[(at + (1 if step == "succ" else -1)) % len(values)]
+            case ("number", _, value):
+                return value
             case ("tuple", *parts):
                 return tuple(self.one(p, env) for p in parts)
             case ("part", partition, of):
@@ -274,13 +277,19 @@ class ColouredNet:
         )
         return self._text(term if is_many else ("times", 1, term))
 
+    def _number(self, sort: str, value: int) -> str:
+        found = self.sorts[sort]
+        assert isinstance(found, Range)
+        of = f'<finiteintrange start="{found.low}" end="{found.high}"/>'
+        return f'<finiteintrangeconstant value="{value}">{of}</finiteintrangeconstant>'
+
     def _text(self, term: Term) -> str:
+        if isinstance(term, tuple) and term[0] == "number":
+            return self._number(term[1], term[2])
         if isinstance(term, int):
-            sort = next(n for n, s in self.sorts.items() if isinstance(s, Range))
-            found = self.sorts[sort]
-            assert isinstance(found, Range)
-            of = f'<finiteintrange start="{found.low}" end="{found.high}"/>'
-            return f'<finiteintrangeconstant value="{term}">{of}</finiteintrangeconstant>'
+            return self._number(
+                next(n for n, s in self.sorts.items() if isinstance(s, Range)), term
+            )
         if isinstance(term, str):
             if term in self.variables:
                 return f'<variable refvariable="{term}"/>'

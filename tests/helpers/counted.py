@@ -40,12 +40,14 @@ class Done:
         out: what it printed.
         err: its messages.
         shared: the directory that it was given.
+        reached: whether a call came that was to fail.
     """
 
     code: int
     out: str
     err: str
     shared: Path
+    reached: bool = False
 
     @property
     def error(self) -> str:
@@ -252,7 +254,11 @@ class Lab:
             (folder / "name.txt").write_bytes(name)
         path = program if isinstance(program, Path) else self.program(program)
         given = ["--dir", shared, "--input", folder] if directory else []
-        more = {"LD_PRELOAD": str(self.preloaded), "FAILING": failing} if failing or limit else {}
+        reached = folder / "reached"
+        more = {}
+        if failing or limit:
+            more = {"LD_PRELOAD": str(self.preloaded), "FAILING": failing}
+            more["FAILING_REACHED"] = str(reached)
 
         def fill() -> None:
             if limit is not None:
@@ -264,11 +270,10 @@ class Lab:
             [path, *map(str, [*given, *arguments])],
             input=stdin.encode() if isinstance(stdin, str) else stdin,
             cwd=folder, env={**os.environ, **more, **(env or {})}, capture_output=True, timeout=DEADLINE_S, check=False,
-            preexec_fn=fill,
+            preexec_fn=None if limit is None else fill,  # otherwise no copy of the tests has to be made
         )  # fmt: skip
-        return Done(
-            done.returncode, done.stdout.decode("latin-1"), done.stderr.decode("latin-1"), shared
-        )
+        out, err = (text.decode("latin-1") for text in (done.stdout, done.stderr))
+        return Done(done.returncode, out, err, shared, reached.exists())
 
     @contextmanager
     def started(

@@ -72,6 +72,8 @@ grip = { command = "tool", action = "grip", duration_s = 0.5, takes = "box" }
 drop = { command = "tool", action = "drop", duration_s = 0.5, releases = "box" }
 feed = { command = "tool", action = "feed", duration_s = 0.5, creates = "box", at = "here" }
 clear = { command = "tool", action = "clear", duration_s = 0.5, removes = "box", at = "here" }
+fetch = { command = "tool", action = "lock", duration_s = 0.5, couples = "hand" }
+leave = { command = "tool", action = "unlock", duration_s = 0.5, uncouples = "hand" }
 
 [robots.arm]
 instance = "Robot"
@@ -111,6 +113,13 @@ carries = ["rod"]
 instance = "Turner"
 model = "kr120_r2500"
 base = { x = -5.0 }
+
+[robots.other]
+instance = "Other"
+model = "kr120_r2500"
+base = { x = -5.0, y = 5.0 }
+tools = ["hand", "foot"]
+begins_with = "foot"
 
 [robots.turner.axes.plate]
 kind = "turntable"
@@ -254,6 +263,22 @@ kind = "mesh"
 file = "stone.obj"
 scale = 0.5
 
+[tools.hand]
+model = "counterpoint"
+rack = "shelf"
+holders = ["table"]
+takes = ["box"]
+does = ["grip"]
+tolerance = 0.003
+angle_deg = 3.0
+
+[tools.foot]
+model = "vacuum_gripper"
+
+[places.shelf]
+x = -5.0
+y = 6.0
+z = 1.0
 [places.jaws]
 x = 5.01
 z = 0.5
@@ -313,14 +338,16 @@ fair = ["weak all"]
 about = "net"
 """)
 
+_ARMS = ("tools", "parts", "places", "frames", "robots", "devices", "scene")
 _NEEDED = {
-    "primitives": ("parts", "places", "frames", "robots", "devices"),
+    "primitives": _ARMS,
     "sensors": ("parts", "places", "robots", "devices"),
-    "report": ("channel", "primitives", "parts", "places", "frames", "robots", "devices"),
+    "report": ("channel", "primitives", *_ARMS),
     "devices": ("places",),
-    "frames": ("robots", "parts"),
-    "robots": ("parts",),
-    "scene": ("robots", "parts"),
+    "frames": ("robots", "parts", "tools", "places", "scene"),
+    "robots": ("parts", "tools", "places", "scene"),
+    "scene": ("robots", "parts", "tools", "places"),
+    "tools": _ARMS,
     "layouts": tuple(FULL),
 }
 """The sections that are named in a section."""
@@ -382,7 +409,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
     config = load(path, d, layout="near" if section == "layouts" else None)
     if config is None:
         return "", d
-    is_placed = section in (*PLACED, "devices", "layouts")
+    is_placed = section in (*PLACED, "tools", "devices", "layouts")
     cell = scene.load(config.geometry, folder, config.locator.origin, d) if is_placed else None
     shown = [
         config.layouts,
@@ -398,7 +425,13 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         shown += [
             (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
         ]
-        shown += [(r.kinematics.arm_angle, r.carries) for r in cell.robots]
+        shown += [
+            (r.kinematics.arm_angle, r.carries, tuple(r.tools), r.begins_with) for r in cell.robots
+        ]
+        shown += [
+            (x.name, x.tool.name, x.rack, x.holders, x.takes, x.does, x.tolerance, x.angle)
+            for x in cell.tools.values()
+        ]
         shown += [a.described() for r in cell.moving for a in r.axes]
         shown += [
             (c.axis.name, c.jaws, c.place, c.may_be_empty)

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from helpers.coloured_families import FAMILIES
-from helpers.examined import bound, examined, sizes
+from helpers.examined import bound, examined, sizes, truths
+from helpers.random_coloured import random_coloured
 from helpers.random_tables import Graph
 from pn2code.contest import portfolio
 from pn2code.contest.engine import engine
@@ -61,6 +62,23 @@ def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
     assert found == expected
     found_space = space(program, tables, seconds=SECONDS, mebibytes=1024)
     assert sizes(found_space) == graph.sizes
+
+
+@pytest.mark.parametrize("first", [0, 20])
+def test_random_nets_are_read_as_they_are_meant(first: int, tmp_path: Path) -> None:
+    path, compared = tmp_path / "model.pnml", 0
+    for seed in range(first, first + 20):
+        net = random_coloured(random.Random(seed))
+        graph = Graph.of(net.tables(), 60)
+        if graph is None:
+            continue
+        path.write_text(net.pnml(), encoding="utf-8")
+        found = Graph.of(read(path), 60)
+        assert found is not None
+        assert (len(found.markings), found.arcs) == (len(graph.markings), graph.arcs), seed
+        assert truths(found) == truths(graph), seed
+        compared += 1
+    assert compared > 5
 
 
 def test_what_structural_methods_have_no_time_for_is_left_to_the_engine(

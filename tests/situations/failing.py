@@ -26,10 +26,14 @@ def each_call_fails_once(lab: Lab) -> None:
     """The supervisor says which, and stops, or does without; no file is torn, no temporary one is left."""
     for name, error, code in CALLS:
         codes = set()
+        missed = 0
         for number in range(1, MOST):
             done = lab.run("odd.deployed", "-q", order=1, failing=f"{name}:{number}:{error}")
             codes.add(done.code)
             assert_whole(done.shared)
+            missed += not done.reached
+            if missed == 2:
+                break  # there are not so many of these calls; how many, depends on how long it waits
             if done.code == 0:
                 assert done.err == "" or done.err.startswith(
                     "warning: no notifications of changes in "

@@ -35,7 +35,7 @@ ALLOWED: dict[str, set[str]] = {
     "convert": {"diagnostics", "ml", "net", "pnml", "reading", "semantics", "unfold"},
     "emission": {"cell", "diagnostics", "ir", "lowering", "net", "robot_scripts", "tdl"},
     "toolchain": {"diagnostics", "emission"},
-    "contest": {"diagnostics", "net", "properties", "symbolic", "toolchain", "unfold"},
+    "contest": {"diagnostics", "ml", "net", "properties", "semantics", "symbolic", "toolchain", "unfold"},
     "simulate": {"cell", "diagnostics", "emission", "lowering", "monitors", "net", "semantics", "toolchain", "trace"},
     "verify": {"cell", "channels", "diagnostics", "drawing", "emission", "ir", "lowering", "ml", "net",
         "primitive_calls", "properties", "reading", "robot", "robot_scripts", "semantics", "simulate", "structure",

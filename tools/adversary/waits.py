@@ -44,7 +44,11 @@ def contradictions(
             longest = _longest(run, names[first], names[second])
             for found, known, paces in (
                 (of_search, is_whole, (Pace.PLANNED,)),
-                (of_anyhow, is_whole and not anyhow.why, (Pace.PLANNED, Pace.EARLY)),
+                (
+                    of_anyhow,
+                    is_whole and not anyhow.why and anyhow.adds_up,
+                    (Pace.PLANNED, Pace.EARLY),
+                ),
             ):
                 if not known or found.ns is None or pace not in paces:
                     continue

@@ -6,6 +6,8 @@ python -m tools.bench.families --measure                               # what `v
 ring      robots that pass parts on from one to the next, on carriers that come back
 zones     robots in a circle, each of which needs the zones on both of its sides for each of its parts
 line      stations behind each other, with trays between them that hold any number of parts
+pallets   stations behind each other, each of which needs a pallet while it works; there are as many as stations
+chain     robots that hand parts on, and tell each other so themselves (`chains`)
 retries   robots whose sensor tells whether they have a part; if not they try again, three times
 """
 
@@ -19,6 +21,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))  # as pytest does
 
+from tools.bench import chains
 from tools.bench.tending import DEVICE, verified
 
 from helpers.netbuilder import cpn
@@ -145,22 +148,38 @@ def retries(size: int, parts: int) -> Lines:
     return lines + steps + _END
 
 
+def pallets(size: int, parts: int) -> Lines:
+    """As `line`, and each part that is worked on is on one of n pallets."""
+    found: Lines = []
+    for x in line(size, parts):
+        at = x.split()
+        found.append(x)
+        if at[0] == "trans" and at[1] != "End":
+            found.append(f"      {'in' if at[1].startswith('Start') else 'out'} Pallets : ()")
+    return [_place("Pallets", f" = {size}"), *found]
+
+
 FAMILIES: dict[str, Callable[[int, int], Lines]] = {
     "ring": ring,
     "zones": zones,
     "line": line,
+    "pallets": pallets,
     "retries": retries,
 }
 MEASURED: dict[str, tuple[tuple[int, int], ...]] = {
     "ring": ((3, 12), (5, 12), (5, 100), (7, 12)),
     "zones": ((3, 6), (4, 6), (5, 6), (5, 50), (6, 6)),
     "line": ((2, 12), (3, 12), (4, 12), (4, 50), (6, 12)),
+    "pallets": ((2, 12), (3, 12), (4, 12), (4, 50)),
+    "chain": ((2, 12), (3, 12), (4, 12), (4, 50), (6, 12)),
     "retries": ((1, 6), (2, 6), (3, 6), (3, 50), (4, 6)),
 }
 
 
 def net(family: str, size: int, parts: int) -> str:
     """The net, as `helpers.netbuilder` reads it."""
+    if family == "chain":
+        return chains.net(size, parts)
     numbers = range(1, size + 1)
     top, ports, sockets = [], [], []
     for i in numbers:
@@ -179,6 +198,8 @@ def net(family: str, size: int, parts: int) -> str:
 
 def toml(family: str, size: int) -> str:
     """The cell."""
+    if family == "chain":
+        return chains.toml(size)
     text = '[net]\nfile = "cell.cpn"\n\n[supervisor]\ninstance = "Supervisor"\n'
     text += 'final = ["Finished"]\norder = "documented"\n'
     for i in range(1, size + 1):
@@ -216,7 +237,7 @@ def measured(family: str, size: int, parts: int, options: Sequence[str]) -> str:
 def main() -> int:
     """Writes a cell, or prints a table."""
     parser = argparse.ArgumentParser(prog="tools.bench.families")
-    parser.add_argument("--family", choices=sorted(FAMILIES))
+    parser.add_argument("--family", choices=sorted(MEASURED))
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--size", type=int, default=3, help="robots (default: %(default)s)")
     parser.add_argument("--parts", type=int, default=6, help="(default: %(default)s)")
@@ -230,7 +251,7 @@ def main() -> int:
         options = ["--max-seconds", str(given.seconds), *(["--no-reduction"] * given.all)]
         print("| family | robots | parts | how | states | checks | medium | seconds |")
         print("|---|---|---|---|---|---|---|---|")
-        for family in [given.family] if given.family else FAMILIES:
+        for family in [given.family] if given.family else MEASURED:
             for size, parts in MEASURED[family]:
                 row = measured(family, size, parts, options)
                 print(f"| {family} | {size} | {parts} | {row} |", flush=True)

@@ -2,10 +2,12 @@
 
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
-./dev geometry --pairs 400           pairs of moves a second of processor time: mostly far apart, and dense
+./dev geometry --pairs 400           pairs of moves a second of processor time: mostly far apart, and dense;
+                                     --jobs 2: with two processes
 ./dev geometry --cells 40            random cells: two arms, half of them with tracks and a turntable, and an arm with
                                      a belt, a machine with door and clamp, and a table that turns; parts are
-                                     stacked, and sensors see the scene: what collides in PyBullet, or cannot be done
+                                     stacked, tools changed, and sensors see the scene:
+                                     what collides in PyBullet, or cannot be done
                                      with a part, is never said to be right; in
                                      each fourth of them an arm is placed anew, and what is proved of its
                                      new place is run as well
@@ -26,6 +28,7 @@ from tools.geometry.pairs import WORKLOADS, measured
 from tools.geometry.unguarded import unguarded
 from tools.geometry.wander import wander
 
+from helpers.changing_cells import changing_cell
 from helpers.machine_cells import machine_cell
 from helpers.netbuilder import cpn
 from helpers.sighted_cells import sighted_cell
@@ -113,14 +116,16 @@ def pictures(folder: Path, to: Path) -> int:
     return 0
 
 
-def speeds(count: int) -> int:
-    """Pairs of moves a second, on two workloads."""
-    print("| pairs | number | touch | not known | distances | a pair, ms | pairs a second |")
-    print("|---|---|---|---|---|---|---|")
+def speeds(count: int, jobs: int) -> int:
+    """Pairs of moves a second of processor time, on two workloads, and seconds by the clock."""
+    print(
+        "| pairs | number | touch | not known | distances | a pair, ms | pairs a second | elapsed, s |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
     for workload in WORKLOADS:
-        x = measured(workload, count)
+        x = measured(workload, count, jobs)
         each = f"{1000.0 * x.seconds / x.pairs:.1f} | {x.pairs / x.seconds:.0f}"
-        row = f"{workload} | {x.pairs} | {x.touching} | {x.open} | {x.distances:,} | {each}"
+        row = f"{workload} | {x.pairs} | {x.touching} | {x.open} | {x.distances:,} | {each} | {x.elapsed:.1f}"
         print(f"| {row} |", flush=True)
     return 0
 
@@ -171,8 +176,11 @@ def placed(cell: Path, robot: str, out: Path, seed: int, walks: int) -> tuple[st
 def random_cell(number: int) -> tuple[str, str]:
     """In turns two arms, two arms with tracks and a turntable, a welding pair, and an arm between devices that move.
 
-    Each other one of the last asks sensors that see the scene.
+    Each other one of the last asks sensors that see the scene; of these each other one changes tools instead, with a
+    second arm.
     """
+    if number % 16 == 15:
+        return changing_cell(Random(number))
     if number % 8 == 7:
         return sighted_cell(Random(number))
     if number % 4 == 3:
@@ -221,6 +229,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev geometry", description=__doc__.split("\n")[0])
     parser.add_argument("--cells", type=int, default=0, metavar="N")
     parser.add_argument("--pairs", type=int, default=0, metavar="N", help="of each workload")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for `--pairs`")
     parser.add_argument("--seed", type=int, default=1, metavar="K")
     parser.add_argument("--step", type=int, default=1, metavar="N", help="each Nth cell alone")
     parser.add_argument("--no-runs", dest="runs", action="store_false", help="random walks alone")
@@ -228,7 +237,7 @@ def main() -> int:
     parser.add_argument("--pictures", type=Path, metavar="DIR")
     options = parser.parse_args()
     if options.pairs:
-        return speeds(options.pairs)
+        return speeds(options.pairs, options.jobs)
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         if options.cells:
             return random_cells(

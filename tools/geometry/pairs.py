@@ -1,6 +1,6 @@
 """`./dev geometry --pairs N`: pairs of moves a second of processor time, on two workloads.
 
-measured("dense", 256)              # Measured(pairs, touching, distances, seconds)
+measured("dense", 256)              # Measured(pairs, touching, distances, seconds, elapsed)
 
 Two arms of one kind face each other. `far`: moves in all of what each arm reaches, most of which keep well apart, as in
 real cells; `dense`: moves in the space that both share, about half of which touch.
@@ -8,7 +8,9 @@ real cells; `dense`: moves in the space that both share, about half of which tou
 
 from __future__ import annotations
 
+import itertools
 import math
+import resource
 import time
 import tomllib
 from pathlib import Path
@@ -17,6 +19,7 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
@@ -48,13 +51,14 @@ SPACE: dict[Workload, tuple[tuple[float, float], ...]] = {
 
 @frozen
 class Measured:
-    """What a workload took: distances that were measured, and seconds of processor time."""
+    """What a workload took: distances that were measured, seconds of processor time, and seconds by the clock."""
 
     pairs: int
     touching: int
     open: int
     distances: int
     seconds: float
+    elapsed: float
 
 
 def facing(workload: Workload) -> RobotCell:
@@ -66,7 +70,13 @@ def facing(workload: Workload) -> RobotCell:
     return cell
 
 
-def measured(workload: Workload, count: int) -> Measured:
+def processor() -> float:
+    """Seconds of this process and of those that it has begun and ended."""
+    own, others = (resource.getrusage(w) for w in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return own.ru_utime + own.ru_stime + others.ru_utime + others.ru_stime
+
+
+def measured(workload: Workload, count: int, jobs: int = 1) -> Measured:
     """Sweeps about so many pairs against each other, as `check --geometry` does."""
     cell = facing(workload)
     backend = BulletBackend(cell, looks=False)
@@ -74,9 +84,13 @@ def measured(workload: Workload, count: int) -> Measured:
     some = math.isqrt(count)
     left, right = (moves(planner, r, workload, some) for r in ("left", "right"))
     compared = Comparison(cell, planner, Shown(backend))
-    began = time.process_time()
-    found = [compared.two((a, ()), (b, ())) for a in left for b in right]
-    seconds = time.process_time() - began
+    nothing = Doing(planner, cell).start
+    acts = [[Activity(0, ((leg, nothing),), leg.end, nothing) for leg in x] for x in (left, right)]
+    pairs = list(itertools.product(*acts))
+    began, clock = processor(), time.perf_counter()
+    with compared.pairs_ahead(pairs, jobs, lambda _pair: True):
+        found = [x for pair in pairs for _, _, x in compared.activities(*pair)]
+    seconds, elapsed = processor() - began, time.perf_counter() - clock
     backend.close()
     outcomes = [x.outcome for x in found]
     return Measured(
@@ -85,6 +99,7 @@ def measured(workload: Workload, count: int) -> Measured:
         outcomes.count("open"),
         compared.sweeper.queries,
         seconds,
+        elapsed,
     )
 
 

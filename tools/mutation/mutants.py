@@ -94,6 +94,7 @@ C_RULES: tuple[Rule, ...] = (
     ("call dropped", re.compile(r"^(\s*)(?:\(void\))?[\w.>-]+\([^=]*\);$"), lambda m: f"{m[1]};"),
 )  # fmt: skip
 COMMAND = re.compile(r"^(\s+)(?:move|tool|measure|wait(?! until)) .*$")
+_CHANGED = {"couples": "uncouples", "uncouples": "couples"}
 SCRIPT_RULES: tuple[Rule, ...] = (
     ("comparison", re.compile(r"(?<= )(=|<>|<=|>=|<|>)(?= .* then$)"), lambda m: _EQUALS.get(m[1]) or _COMPARED[m[1]]),
     ("line dropped", re.compile(r"^(\s+)(?:clear|write|mark|sense|read) .*$"), lambda m: f"{m[1]}-- dropped"),
@@ -106,9 +107,11 @@ SCRIPT_RULES: tuple[Rule, ...] = (
     ("speed", re.compile(r"(?<=move )(\$joint .*|\$linear .*)$"), lambda m: f"{m[1]} at {_SPEED[m[1][1]]}"),
     ("wait dropped", re.compile(r"^(\s+)wait until .*$"), lambda m: f"{m[1]}-- dropped"),
     ("part dropped", re.compile(r" (?:takes|releases|(?:creates|removes) \w+ at) \w+(?= for )"), lambda m: ""),
+    ("tool dropped", re.compile(r" (?:un)?couples \w+(?= for )"), lambda m: ""),
     ("part", re.compile(r" (takes|releases)(?= \w+ for )"), _other({"takes": "releases", "releases": "takes"})),
+    ("part", re.compile(r" (couples|uncouples)(?= \w+ for )"), _other(_CHANGED)),
     ("part", re.compile(r" (creates|removes)(?= \w+ at )"), _other({"creates": "removes", "removes": "creates"})),
-    ("part", re.compile(r" (?:takes|releases|creates|removes) (\w+)(?= )"), lambda m: f"{m[0]}x"),
+    ("part", re.compile(r" (?:takes|releases|creates|removes|(?:un)?couples) (\w+)(?= )"), lambda m: f"{m[0]}x"),
     ("place", re.compile(r" (?:creates|removes) \w+ at (\w+)(?= for )"), lambda m: f"{m[0]}x"),
     ("speed dropped", re.compile(r"(?<=[\w)]) at (?:(?! at ).)* (?:mm/s|%)$"), lambda m: ""),
     ("rounding", re.compile(r"(?<![\w.\"])(\d+\.\d*[1-9]\d*)"), lambda m: repr(round(float(m[1]), 1) + 1e-4)),

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does
 
 import pytest
 from tools.reduction_cells.asked import WRONG_PROPERTIES
-from tools.reduction_cells.bed import Verdict, judge
+from tools.reduction_cells.bed import MADE, Verdict, judge
 from tools.reduction_cells.files import ANY, FORGETFUL
 from tools.reduction_cells.limited import WRONG_LIMITS
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
@@ -29,7 +29,9 @@ from helpers import delivered_runtime, tiny_compiler
 from helpers.compiled import DELIVERED
 from pn2code.toolchain import programs
 
-FAMILIES = ("any", "shops", "mixed")
+FAMILIES = ("any", *MADE, "mixed")
+IN_TURN = ("mixed", "shops", "stations", "mixed", "shops", "peers")
+"""Of seeds one after the other."""
 
 
 def main() -> int:
@@ -58,14 +60,16 @@ def main() -> int:
                 break
             if seed in done:
                 continue
-            is_shop = options.family == "shops" or (options.family == "any" and seed % 3 != 0)
+            family = options.family
+            if family == "any":
+                family = IN_TURN[seed % len(IN_TURN)]
             with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
                 done[seed] = judge(
                     seed,
                     Path(folder),
                     mutants=options.mutants,
                     wants_medium=seed % options.medium == 0,
-                    is_shop=is_shop,
+                    family=family,
                     only_verdicts=options.verdicts,
                 )
             for text in done[seed].wrong:

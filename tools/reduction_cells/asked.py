@@ -16,7 +16,7 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verify.controller.by_counts import abstract, questions
 from pn2code.verify.controller.control_types import Control, Plan
 from pn2code.verify.controller.running import Running
-from pn2code.verify.controller.stated import Stated, stated
+from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 
@@ -45,6 +45,12 @@ def properties(r: Random, opened: OpenNet, partition: Partition) -> m.Properties
     def condition() -> str:
         return f"tokens({place()}) {r.choice(['=', '>=', '<='])} {r.randint(0, 2)}"
 
+    channels = {c.place for c in partition.channels}
+    own = [x for p, x in enumerate(places) if partition.place_owner[p] == 0 and p not in channels]
+
+    def mine() -> str:
+        return f"tokens({r.choice(own)}) {r.choice(['=', '>=', '<='])} {r.randint(0, 2)}"
+
     kinds = (
         lambda: f"mutex {', '.join(r.sample(places, 2))}",
         lambda: f"bound {place()} <= {r.randint(0, 3)}",
@@ -65,6 +71,11 @@ def properties(r: Random, opened: OpenNet, partition: Partition) -> m.Properties
         lambda: f"every {condition()} is followed by {condition()}",
         lambda: f"every fires({r.choice(fired)}) is followed by {condition()}",
         lambda: f"every fires({r.choice(fired)}) is followed by {condition()} within 1 firings",
+        lambda: f"ltl ({mine()}) U ({mine()})",
+        lambda: f"ltl G ({mine()} -> ({mine()}) U ({mine()} || {mine()}))",
+        lambda: f"ltl F ({mine()} && G {mine()})",
+        lambda: f"every {mine()} is followed by {mine()}",
+        lambda: f"ltl X {condition()}",
     )
     texts = [r.choice(kinds)() for _ in range(MOST)]
     return gather(opened, texts, None, Diagnostics(), found=False).plain
@@ -84,7 +95,7 @@ def of_part(
 
 def of_states(properties: m.Properties, partition: Partition) -> m.Properties:
     """Those that are conditions on states."""
-    kept = (p for p in properties.properties if stated(p, 0, properties, partition) is not None)
+    kept = (p for p in properties.properties if ways(p, 0, properties, partition))
     return replace(properties, properties=tuple(kept))
 
 
@@ -104,6 +115,8 @@ class OfStates:
 
     properties: m.Properties
     holding: tuple[int, ...]
+    of_paths: int = 0
+    """how many formulas about paths are among them"""
 
     @staticmethod
     def of(
@@ -111,8 +124,11 @@ class OfStates:
     ) -> OfStates | None:
         """Of properties, or wrong versions of them; None: nothing is said."""
         over = Running.of(partition, loose=True).over
-        pairs = [(i, stated(p, over, asked, partition)) for i, p in enumerate(asked.properties)]
-        known = [(i, change(x)) for i, x in pairs if x is not None]
+        known = [
+            (i, change(x))
+            for i, p in enumerate(asked.properties)
+            for x in ways(p, over, asked, partition)
+        ]
         made = abstract(partition, plan, (), [x for _, x in known], least=LEAST)
         if made is None:
             return None
@@ -130,17 +146,21 @@ class OfStates:
         found = explore(made.running.net, plan.storage, limits, Diagnostics(), options)
         if found is None or not found.complete or found.error is not None:
             return None
-        said = [row["answer"] for row in found.answers]
+        said = found.answers
         about, others = said[1 : 1 + len(known)], said[1 + len(known) :]
-        if len(said) != lines.count("\n? ") or any(answer != "yes" for answer in others):
+        if len(said) != lines.count("\n? ") or any(row["answer"] != "yes" for row in others):
             return None
-        holding = (i for (i, _), answer in zip(known, about, strict=True) if answer == "yes")
-        return OfStates(asked, tuple(holding))
+        holding = {i for (i, x), row in zip(known, about, strict=True) if x.holds(row)}
+        paths = {
+            i for (i, x), row in zip(known, about, strict=True) if x.is_of_paths and x.holds(row)
+        }
+        return OfStates(asked, tuple(sorted(holding)), len(paths))
 
     def judged(self, whole: Control, counts: Counter[str]) -> Iterator[str]:
         """What is wrong: `whole` are all states of the cell, of which the same is asked."""
         counts["properties"] += len(self.properties.properties)
         counts["properties that hold with limits"] += len(self.holding)
+        counts["formulas about paths that hold with limits"] += self.of_paths
         yield from self.wrong(whole)
 
     def wrong(self, whole: Control) -> Iterator[str]:

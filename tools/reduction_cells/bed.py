@@ -14,7 +14,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
@@ -25,7 +25,9 @@ from tools.reduction_cells import asked, closed, files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
+from tools.reduction_cells.peers import peers
 from tools.reduction_cells.shops import shop
+from tools.reduction_cells.stations import stations
 
 from helpers.netbuilder import cpn
 from helpers.random_cells import random_cell
@@ -51,6 +53,11 @@ from pn2code.verify.exploring.turns import Turns
 NONE = m.Properties()
 MOST = 40_000
 """States of a cell; larger ones are left out."""
+MADE: Mapping[str, Callable[[Random], tuple[str, str]]] = {
+    "shops": shop,
+    "peers": peers,
+    "stations": stations,
+}
 
 
 @dataclass(frozen=True)
@@ -62,16 +69,16 @@ class Verdict:
     counts: Counter[str]
 
 
-def make(seed: int, folder: Path, *, is_shop: bool = False) -> None:
-    """The files of a cell: a shop, or one of three families that are wrong more often."""
+def make(seed: int, folder: Path, family: str = "mixed") -> None:
+    """The files of a cell of a family; "mixed": of three that are wrong more often."""
     r = Random(seed)
-    family = r.random()
+    which = r.random()
     inputs: tuple[tuple[str, str], ...] = ()
-    if is_shop:
-        net, toml = shop(r)
-    elif family < 0.6:
-        net, toml = flow(r, many=family >= 0.5)
-    elif family < 0.75:
+    if family in MADE:
+        net, toml = MADE[family](r)
+    elif which < 0.6:
+        net, toml = flow(r, many=which >= 0.5)
+    elif which < 0.75:
         net, toml = random_cell(r)
     else:
         cell = adversary_cell(r)
@@ -217,11 +224,11 @@ def judge(
     *,
     mutants: bool,
     wants_medium: bool,
-    is_shop: bool = False,
+    family: str = "mixed",
     only_verdicts: bool = False,
 ) -> Verdict:
     """Makes a cell, and compares; `only_verdicts`: not the spaces as well."""
-    make(seed, folder, is_shop=is_shop)
+    make(seed, folder, family)
     d = Diagnostics()
     opened = open_net(folder, {}, warnings=d)
     partition = divide(opened.flat, opened.config, d) if opened.config is not None else None
@@ -299,8 +306,10 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
 def _of_checks(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
     first = r.choice(FEW)
     found = cell.checked(MOST, first)
-    counted = found if found is not None and found.is_counted else None
-    counts["checks with limits"] += counted is not None
+    is_less = found is not None and (found.is_counted or found.reduced_orders)
+    counted = found if is_less else None
+    counts["checks with limits"] += found is not None and found.is_counted
+    counts["orders with limits, or in turns"] += found is not None and found.reduced_orders
     reduced = cell.checked(1)
     if reduced is None or not reduced.reduced or reduced.found is None:
         counts["checks of the whole"] += 1

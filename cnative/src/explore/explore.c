@@ -60,6 +60,7 @@ static void print_help(void)
         "  --progress-every S  seconds between them (default 0.5)\n"
         "  --dead-limit N      dead states that are listed (default 1000)\n"
         "  --write-graph FILE  all nodes and arcs as lines of JSON\n"
+        "  --write-part        also where a limit was reached: then of the first nodes, `cut` where arcs are missing\n"
         "  --write-limit N     but none of a graph with more nodes\n"
         "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
         "  --traces N          so many of them (default 1)\n"
@@ -207,7 +208,9 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
                                .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
-        if (strcmp(option, "--no-graph") == 0) {
+        if (strcmp(option, "--write-part") == 0) {
+            options->writes_part = true;
+        } else if (strcmp(option, "--no-graph") == 0) {
             options->has_graph = false;
         } else if (strcmp(option, "--still") == 0) {
             options->is_still = true;

@@ -39,6 +39,7 @@ typedef struct ex_options {
     const char *counts;      /* file: the places whose tokens are counted up to a limit only; NULL: there are none */
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
+    bool writes_part;        /* also of a part of the graph, where a limit was reached */
     uint64_t write_limit;    /* most nodes of a graph that is written */
     double progress_every;   /* seconds between lines */
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */

@@ -230,8 +230,8 @@ static bool write_arc(void *user, uint32_t transition, const void *binding, cons
     graph_writer_t *const w = user;
     const ex_store_t *const store = &w->worker->run->store;
     const uint64_t slot = ex_store_find(store, key, ex_hash(key));
-    if (slot == EX_NO_SLOT) {
-        return true;
+    if ((slot == EX_NO_SLOT) || (w->graph->number[slot] == 0U)) {
+        return true; /* of a part of a graph */
     }
     pn_text_clear(&w->text);
     pn_text_str(&w->text, "{\"from\": ");
@@ -252,12 +252,14 @@ static bool write_arc(void *user, uint32_t transition, const void *binding, cons
 
 static bool write_node(graph_writer_t *w, const ex_key_t *key)
 {
+    const bool is_cut = (w->graph->cut != NULL) && (EX_BIT(w->graph->cut, w->node) != 0U);
     if (!ex_load(w->worker, key)) {
         return false;
     }
     pn_text_clear(&w->text);
     pn_text_str(&w->text, "{\"node\": ");
     pn_text_uint(&w->text, (uint64_t)w->node + 1U);
+    pn_text_str(&w->text, is_cut ? ", \"cut\": true" : "");
     pn_text_str(&w->text, ", \"t\": ");
     time_json(&w->text, pn_now(&pn_net, w->worker->marking));
     pn_text_str(&w->text, ", \"marking\": {");

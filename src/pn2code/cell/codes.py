@@ -83,6 +83,13 @@ PRIMITIVE_AXIS = register(
     "the robot in whose table they are. Only its own script moves them, so that where they stand is known when a move "
     "begins.",
 )
+PRIMITIVE_TOOL = register(
+    "primitive-tool",
+    "what is said of a tool that robots change does not fit the primitives",
+    "`tools` of a robot in cell.toml lists the tools of `[tools]` that it may couple: their TCPs, masses and shapes "
+    "are part of what is planned and checked for this robot. Only these can its script couple and uncouple. "
+    "`does` of a tool names the actions of [primitives] for which it is needed.",
+)
 PRIMITIVE_UNNAMED = register(
     "primitive-unnamed",
     "a call in a robot's code segment is no command and has no effect",

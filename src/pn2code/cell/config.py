@@ -245,10 +245,18 @@ class CellConfig:
 
     def tcps(self, robot: str) -> tuple[str, ...]:
         """The names of the further tool frames of a robot."""
+        tcps = self._of_robot(robot, "tcps")
+        return tuple(tcps) if isinstance(tcps, dict) else ()
+
+    def tools(self, robot: str) -> tuple[str, ...]:
+        """The names of the tools that a robot changes."""
+        tools = self._of_robot(robot, "tools")
+        return tuple(x for x in tools if isinstance(x, str)) if isinstance(tools, list) else ()
+
+    def _of_robot(self, robot: str, key: str) -> object:
         robots = self.geometry.get("robots")
         table = robots.get(robot) if isinstance(robots, dict) else None
-        tcps = table.get("tcps") if isinstance(table, dict) else None
-        return tuple(tcps) if isinstance(tcps, dict) else ()
+        return table.get(key) if isinstance(table, dict) else None
 
     def turns_with(self, frame: str) -> str:
         """The turntable on which a frame is, as `ROBOT.AXIS`; "": it stands."""
@@ -267,6 +275,29 @@ class CellConfig:
         tables = kinds.items() if isinstance(kinds, dict) else ()
         found = {kind: t.get("at") for kind, t in tables if isinstance(t, dict)}
         return {kind: len(at) if isinstance(at, list) else 0 for kind, at in found.items()}
+
+    @property
+    def tools_do(self) -> dict[str, tuple[str, ...]]:
+        """The actions that each tool does."""
+        tools = self.geometry.get("tools")
+        tables = tools.items() if isinstance(tools, dict) else ()
+        said = {name: t.get("does") for name, t in tables if isinstance(t, dict)}
+        return {
+            name: tuple(x for x in does if isinstance(x, str))
+            for name, does in said.items()
+            if isinstance(does, list)
+        }
+
+    @property
+    def tools_at_start(self) -> dict[str, str]:
+        """The robot that has each tool when a run begins, "" if none; what is wrong, `robot.scene` reports."""
+        tools = self.geometry.get("tools")
+        out = dict.fromkeys(tools if isinstance(tools, dict) else (), "")
+        for robot in self.robots:
+            first = self._of_robot(robot.name, "begins_with")
+            if isinstance(first, str) and first in out:
+                out[first] = robot.name
+        return out
 
     def logic_digest(self) -> str:
         """SHA-256 of what this file contributes to the generated programs (geometry does not)."""

@@ -56,7 +56,7 @@ from pn2code.cell_file.logic import (
 from pn2code.cell_file.whole import FILE, LAYOUT, PLACED
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
-from pn2code.robot.commands import EFFECTS, Effect, Handling
+from pn2code.robot.commands import CHANGES, EFFECTS, Effect, Handling
 
 
 def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
@@ -126,6 +126,7 @@ def _config(
                 for name, table in table_of(merged.get("devices")).items()
                 if isinstance(table, dict) and "axes" in table
             },
+            "tools": table_of(data.get("tools")),
             "primitives": table_of(data.get("primitives")),
         },
         layouts={
@@ -445,14 +446,14 @@ def _tcp(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) ->
         tcp
         for x in table_of(data.get("robots")).values()
         for tcp in table_of(table_of(x).get("tcps"))
-    }
+    } | {*table_of(data.get("tools"))}
     if name and name not in known:
         r.d.error(
             codes.CELL_VALUE,
-            f"no robot has a tool frame `{name}`",
+            f"no robot has a tool frame or tool `{name}`",
             r.at(*at, "tcp"),
             hint=did_you_mean(name, sorted(known), "")
-            or f"add a table `[robots.NAME.tcps.{name}]` (docs/robots.md)",
+            or f"add a table `[robots.NAME.tcps.{name}]` or `[tools.{name}]` (docs/robots.md)",
         )
     return name
 
@@ -486,7 +487,7 @@ def _handling(
     for effect in given[1:]:
         r.d.error(
             codes.CELL_VALUE,
-            f"an action that `{given[0]}` a part cannot be one that `{effect}` a part, too",
+            f"an action that `{given[0]}` {_what(given[0])} cannot be one that `{effect}` {_what(effect)}, too",
             r.at(*at, effect),
             hint="make two functions of it, which the net calls one after the other",
         )
@@ -502,9 +503,14 @@ def _handling(
     if not given:
         return None
     part = r.get(table, at, PRIMITIVE[given[0]], "")
-    for name, key, section in ((part, given[0], "parts"), (place, "at", "places")):
+    whose = "tools" if given[0] in CHANGES else "parts"
+    for name, key, section in ((part, given[0], whose), (place, "at", "places")):
         expect_named(r, data, name, (*at, key), section)
     return Handling(given[0], part, place)
+
+
+def _what(effect: Effect) -> str:
+    return "a tool" if effect in CHANGES else "a part"
 
 
 _NEEDS: dict[Effect, tuple[Effect, str]] = {
@@ -520,6 +526,8 @@ def _check_handling(r: Tables, data: dict[str, Any], primitives: Mapping[str, Pr
         if primitive.handling:
             done.setdefault(primitive.handling.part, {})[primitive.handling.effect] = name
     for part, by in done.items():
+        if not by.keys().isdisjoint(CHANGES):
+            continue  # a tool may stay on a robot, or in its rack, for the rest of the run
         for effect, name in by.items():
             other, why = _NEEDS.get(effect, (effect, ""))
             if other not in by:

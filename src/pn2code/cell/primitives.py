@@ -30,6 +30,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
 from pn2code.net.flat import CodeSegment, FlatTransition
 from pn2code.net.uses import walk
+from pn2code.robot.commands import CHANGES
 
 _TAKES: dict[CommandName, str] = {
     "move_joint": "POSE -> unit` or `POSE * real -> unit",
@@ -49,6 +50,7 @@ def check_primitives(partition: Partition, config: CellConfig, d: Diagnostics) -
     """Reports entries of `[primitives]` that do not fit the net, and calls that no script would carry out."""
     checker = _Checker(partition, config, d)
     checker.entries()
+    checker.tools()
     checker.calls()
 
 
@@ -161,6 +163,22 @@ class _Checker:
                     hint='add `frame = "world"` if the poses are absolute, `frame = "tool"` if they are increments '
                     "in the tool frame, or the name of a frame of `[frames]`",
                 )
+
+    def tools(self) -> None:
+        """The actions that tools do are those of primitives."""
+        known = {p.action for p in self.config.primitives.values() if p.action}
+        for name, actions in self.config.tools_do.items():
+            for action in actions:
+                if action not in known:
+                    near = nearest(action, known)
+                    self.d.error(
+                        codes.PRIMITIVE_TOOL,
+                        f"tool `{name}` does action `{action}`, which no entry of [primitives] has",
+                        self.config.locator.origin("tools", name, "does"),
+                        hint=f"did you mean `{near}`?"
+                        if near
+                        else "name the `action` of an entry, or remove it",
+                    )
 
     # --- calls -------------------------------------------------------------------------------------
 
@@ -287,13 +305,29 @@ class _Checker:
                     hint=f"add `[{section}.{owner.name}.axes.{axis}]` to {self.config.path.name}, or name another axis "
                     f"in `primitives.{symbol.name}`",
                 )
-        if primitive.tcp and primitive.tcp not in self.config.tcps(owner.name):
+        known = (*self.config.tcps(owner.name), *self.config.tools(owner.name))
+        if primitive.tcp and primitive.tcp not in known:
             self.d.error(
                 codes.PRIMITIVE_AXIS,
                 f"`{symbol.name}` moves tool frame `{primitive.tcp}`, which {owner.phrase} does not have",
                 code.action.span,
                 notes=[f"it is called in the code segment of transition `{t.short}`"],
-                hint=f"add `[robots.{owner.name}.tcps.{primitive.tcp}]` to {self.config.path.name}",
+                hint=f"add `[robots.{owner.name}.tcps.{primitive.tcp}]` to {self.config.path.name}, or a tool of that "
+                f"name to `tools` of `[robots.{owner.name}]`",
+            )
+        changed = primitive.handling
+        if (
+            changed is not None
+            and changed.effect in CHANGES
+            and owner.kind is OwnerKind.ROBOT
+            and changed.part not in self.config.tools(owner.name)
+        ):
+            self.d.error(
+                codes.PRIMITIVE_TOOL,
+                f"`{symbol.name}` {changed.effect} tool `{changed.part}`, which {owner.phrase} does not change",
+                code.action.span,
+                notes=[f"it is called in the code segment of transition `{t.short}`"],
+                hint=f'add "{changed.part}" to `tools` of `[robots.{owner.name}]` in {self.config.path.name}',
             )
         plate = self.config.turns_with(primitive.frame or "")
         if plate and plate.split(".")[0] != owner.name:

@@ -506,6 +506,18 @@ ROBOT = Section(
             "The kinds of parts that it takes, for its payload; without it, all that any primitive takes.",
         ),
         Key(
+            "tools",
+            "texts",
+            "The tools that it changes, names of `[tools]` ([robots.md](robots.md#tools-that-are-changed)); `tool` is "
+            "what it couples them with.",
+        ),
+        Key(
+            "begins_with",
+            "text",
+            "Which of `tools` it has when a run begins; without it, none.",
+            "the name of a tool of `[tools]`",
+        ),
+        Key(
             "tcps",
             "named",
             "A further tool frame, in the frame of the flange, to which moves can refer (`tcp` of an entry of "
@@ -610,4 +622,54 @@ PART = Section(
         ),
     ),
     by="kind",
+)
+TOOL = Section(
+    (
+        Key(
+            "model",
+            "text",
+            "An end effector as `tool` of a robot names it: shape, mass, TCP. Its root is what is coupled.",
+            "the name of an end effector, or a .urdf file",
+            required=True,
+        ),
+        Key(
+            "rack",
+            "text",
+            "Where it lies, a name of `[places]`: the frame of its root in the world. Without it, it can only stay "
+            "where it is from the start, on a robot.",
+            "the name of a place of `[places]`",
+        ),
+        Key(
+            "holders",
+            "texts",
+            "What holds it there, names of `[scene] objects`: it may touch these when it comes and leaves (to 1 mm).",
+        ),
+        Key("takes", "texts", "The kinds of parts that it can grip, names of `[parts]`."),
+        Key(
+            "does",
+            "texts",
+            "The actions (`action` of entries of `[primitives]`) for which a robot that changes tools needs this one, "
+            "or another one that does them.",
+        ),
+        Key(
+            "tolerance",
+            "number",
+            "How far the coupling may be from where it has to be when the tool is coupled or uncoupled.",
+            default=0.002,
+            unit="m",
+            low=0.0,
+            above=True,
+            high=0.05,
+        ),
+        Key(
+            "angle_deg",
+            "number",
+            "How far it may be turned then.",
+            default=2.0,
+            unit=_DEGREES,
+            low=0.0,
+            above=True,
+            high=15.0,
+        ),
+    )
 )

@@ -129,6 +129,9 @@ _EFFECT = (
     "At its end the action {} a part of this kind, a name of `[parts]` "
     "([Parts](robots.md#parts-that-are-carried))."
 )
+_CHANGE = (
+    "At its end {} this tool, a name of `[tools]` ([robots.md](robots.md#tools-that-are-changed))."
+)
 CommandName = Literal[
     "move_joint",
     "move_axes",
@@ -201,7 +204,8 @@ PRIMITIVE = Section(
         Key(
             "tcp",
             "text",
-            "Which tool frame comes to the pose, a name of `[robots.NAME.tcps]`; without it, the TCP of the tool.",
+            "Which tool frame comes to the pose, a name of `[robots.NAME.tcps]`, or a name of `[tools]`, which must be "
+            "in use then; without it, the TCP of the tool in use.",
             "the name of a tool frame of a robot",
             only=("move_joint", *LED),
         ),
@@ -292,6 +296,20 @@ PRIMITIVE = Section(
         Key("releases", "text", _EFFECT.format("releases"), "a kind of parts", only=("tool",)),
         Key("creates", "text", _EFFECT.format("creates"), "a kind of parts", only=("tool",)),
         Key("removes", "text", _EFFECT.format("removes"), "a kind of parts", only=("tool",)),
+        Key(
+            "couples",
+            "text",
+            _CHANGE.format("the robot takes from its rack, and uses from then on,"),
+            "the name of a tool of `[tools]`",
+            only=("tool",),
+        ),
+        Key(
+            "uncouples",
+            "text",
+            _CHANGE.format("the robot leaves in its rack"),
+            "the name of a tool of `[tools]`",
+            only=("tool",),
+        ),
         Key(
             "at",
             "text",

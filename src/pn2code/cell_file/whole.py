@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pn2code.cell_file.devices import DEVICE_PLACE
-from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, ZONE
+from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, TOOL, ZONE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
     BOUND,
@@ -126,6 +126,14 @@ FILE = Section(
             "named",
             "Who decides what the net leaves open.",
             inner=SENSOR,
+            entry="NAME",
+            is_word=True,
+        ),
+        Key(
+            "tools",
+            "named",
+            "A tool that robots couple and uncouple ([robots.md](robots.md#tools-that-are-changed)).",
+            inner=TOOL,
             entry="NAME",
             is_word=True,
         ),

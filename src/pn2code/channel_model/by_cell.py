@@ -14,11 +14,12 @@ Let R be the former, as turns look at it (`Running.of(loose=True)`), and M the l
 *and if in the cell*
 
   4  transitions of a robot that compete for a token need the same messages,
-  5  each of them sends at most one message, or data and a flag, and whoever takes the data takes the flag, too, and
-  6  robots send no messages to each other,
 
 *then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of
-M is meant up to the supervisor's end, and without a fault:
+M is meant up to the supervisor's end, and without a fault. A robot *sends* a message in R when its transition puts it;
+or, where R writes the messages of a transition one after the other (`running.staged`), when it writes it. In M a
+message is written after it has been sent (or then), before those that its side sends later, and after its side has
+emptied what it had taken.
 
 *Files.* What happens to one file is a circle: empty (`0`); written; read, while the message waits in the reader's
 memory; consumed; empty. The writer renames into an empty file only, the reader looks only where it has not read,
@@ -28,30 +29,33 @@ not empty, or two in one cycle.
 
 *A run of M is one of R.* R does the same as M: what the supervisor does, when M does it, its looks with the step that
 looks, its publishing with the step that renames; if a channel is one that R may see late, what a round sees there
-comes at the end of the round. What a robot does comes as late as possible: before the first look that finds its
-message, or one that it has sent later. If a look finds an empty file, the robot's message, if it has put one already,
-will be found by a later look, and so will those that it sends later, as they are written after it. So R finds nothing
-there either. A robot does what it does in
-M, because it chooses among transitions that need the same messages (4), and the one that it takes has all of its own:
-so have the others, and what is enabled depends on its own places and on these messages, of which there is one each
-(1). What is left when M's prefix ends comes last. Then each side has the same in its memory, and a channel of R holds
-what has been put, and not consumed.
+comes at the end of the round. What robots do (transitions, and the writing that R knows of) comes as late as possible:
+before a look that finds a message come its sending and what this depends on, namely what the robot has done before, and
+the sending of each message that it has taken from another robot, and so on; in the order that M has. All of this has
+been done in M by then, so what it needs from the supervisor has been published. A robot does what it does in M, because
+it chooses among transitions that need the same messages (4), and the one that it takes has all of its own: so have the
+others, and what is enabled depends on its own places and on these messages, of which there is one each (1).
 
-*Data and a flag* of one transition (5) are written one after the other, the flag last; a round looks at flags first.
-In R this transition comes before the first look that finds the flag, or what is sent later; so M may have found the
-data in an earlier round, and R not yet. The data alone enable nothing, since whoever takes them needs the flag. It is
-not there from an earlier transition either: then this transition could come in R while it is, and the channel would
-hold two, against 1. So in M nothing is fired after that round but what would be without it. In R the data are found
-where the flag is, or in the same round after it, or, if the transition came for what is sent later, in the round in
-which M has found them at the latest or a later one that ends before the flag is found. At the end of the round in which
-the flag is found both have both.
+If a look finds an empty file, R finds nothing there either. For let its message have been sent in R, that is, let an
+earlier look have found a message whose sending depends on it, or is it. If it is another message of the same transition
+see below. Else the robot has sent more later, or in the order in which it writes, and in M the message was in its file
+before that, so the later look would have found it. What is left when M's prefix ends comes last. Then each side has the
+same in its memory, and a channel of R holds what has been put, and not consumed.
+
+*Data and a flag* of one transition that R does not write one after the other go to one reader, and whoever takes the
+data takes the flag, too. M writes the flag last; a round looks at flags first. In R this transition comes before the
+first look that finds the flag, or what depends on what is sent later; so M may have found the data in an earlier round,
+and R not yet. The data alone enable nothing, since whoever takes them needs the flag. It is not there from an earlier
+transition either: then this transition could come in R while it is, and the channel would hold two, against 1. So in M
+nothing is fired after that round but what would be without it. In R the data are found where the flag is, or in the
+same round after it, or, if the transition came for something else, in the round in which M has found them at the latest
+or a later one that ends before the flag is found. At the end of the round in which the flag is found both have both.
 
 *No fault.* Take a shortest prefix after which a writer w has a message for a file that is not empty. If the message
 before has not been consumed, the channel holds two in R, against 1. If it has, by the reader r, then r has since
-emptied other files at most, and a message to another robot, which would be there at once, r does not send (6). So
-what r has done from the taking on has been seen by nobody; without it, and with all that the others have done, this
-is still a run of R: there it does not matter whether files have been emptied. After it the channel holds two, against
-1.
+emptied other files at most, and written nothing: it empties before it writes. So what r has done from the taking on has
+been seen by nobody; without it, and with all that the others have done, this is still a run of R: there it does not
+matter whether files have been emptied. After it the channel holds two, against 1.
 
 *The end.* Between two occurrences of the net's own transitions sides do a limited number of steps. So by 2 no run of
 M goes on for ever, up to the supervisor's end. Let nothing be possible in M; then all sides are calm, and all
@@ -81,12 +85,7 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.by_turns import loosened
 from pn2code.verify.controller.left_over import questions
-from pn2code.verify.controller.running import (
-    SUPERVISOR,
-    NotModelledError,
-    Running,
-    staged,
-)
+from pn2code.verify.controller.running import NotModelledError, Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes
@@ -124,14 +123,11 @@ def why_not(partition: Partition, rules: Rules) -> str:
         return "the net is timed"
     if not partition.final_places:
         return "the cell has no end"
-    if any(SUPERVISOR not in (c.writer, c.reader) for c in partition.channels):
-        return "robots send messages to each other"
     return next(_against(partition), "")
 
 
 def _against(partition: Partition) -> Iterator[str]:
     channels = {c.place for c in partition.channels}
-    in_order = {c.place for c in staged(partition)}
 
     def inputs(t: FlatTransition) -> set[int]:
         return {a.place for a in t.arcs if a.kind is not ArcKind.OUTPUT}
@@ -139,9 +135,6 @@ def _against(partition: Partition) -> Iterator[str]:
     for owner in range(1, len(partition.owners)):
         own = [t for t in partition.net.transitions if partition.transition_owner[t.index] == owner]
         for i, t in enumerate(own):
-            sent = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
-            if len(sent) > 1 and sent & in_order:
-                yield f"`{t.name}` sends {len(sent)} messages, of which some are acted on alone"
             for u in own[:i]:
                 one, other = inputs(t), inputs(u)
                 if (one & other) - channels and (one ^ other) & channels:

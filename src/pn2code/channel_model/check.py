@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from pn2code.cell.partition import Partition
 from pn2code.channel_model import by_cell, by_turns
 from pn2code.channel_model.compose import compose
 from pn2code.channel_model.faults import SAYS, Fault
-from pn2code.channel_model.places import ChannelModel, Crashes, modelled
+from pn2code.channel_model.places import ChannelModel, Crashes
 from pn2code.channel_model.rules import Rules
 from pn2code.channel_model.run_text import RunText
 from pn2code.channel_model.skeleton import Skeleton, Topology, topology
@@ -41,6 +41,8 @@ MOST_IN_TURNS = 4_000_000
 MOST_TRACES = 16
 FILES_FROM = 300_000
 """Of a cell with its medium: then it is asked what the cell as it runs says of its files (`by_cell`)."""
+LARGE = 20_000
+"""States of the cell as it runs: with its medium it has four to twelve times as many, so it is asked at once."""
 QUICK_STATES = 2_000
 """Of a cell: beyond that it pays to have the compiler work longer."""
 WHOLE = "the cell with its medium"
@@ -142,6 +144,7 @@ def check_channel_model(
     most: int | None = None,
     options: ExploreOptions | None = None,
     shown: by_cell.Shown | None = None,
+    running_states: int = 0,
 ) -> Iterator[Answer]:
     """All checks of a cell; none if it has no channels.
 
@@ -156,20 +159,19 @@ def check_channel_model(
         most: of them with its medium that are looked at; None: as many as the limits permit.
         options: who is told of the progress, and who may interrupt; None: nobody.
         shown: what the checks of the supervisor have shown of the files already; None: nothing.
+        running_states: of the cell as it runs, as many as have been seen.
     """
     rules = rules or Rules()
     run = Run(limits, d, replace(options or ExploreOptions(), quick=True))
-    own = modelled(partition)
-    if not own:
+    if not partition.channels:
         return
-    left_out = [c.file for c in partition.channels if c not in own]
     if cell_states is not None:
         fitting = replace(run.options, quick=cell_states <= QUICK_STATES)
         ends = [n for n in (limits.max_states, most) if n is not None]
         part = limits.deadline.share(WHOLE_PART)  # the exchanges are small
         own_limits = replace(limits, max_states=min(ends, default=None), deadline=part)
         own_run = replace(run, limits=own_limits, options=fitting)
-        yield whole(partition, storage, own_run, rules, left_out, shown)
+        yield whole(partition, storage, own_run, rules, shown, running_states)
     else:
         yield too_large()
     seen: dict[Topology, str] = {}
@@ -186,18 +188,16 @@ def whole(
     storage: Mapping[str, str],
     run: Run,
     rules: Rules,
-    left_out: Sequence[str] = (),
     shown: by_cell.Shown | None = None,
+    running_states: int = 0,
 ) -> Answer:
-    """The cell's own net with its medium; no side crashes. `shown`: as for `check_channel_model`."""
+    """The cell's own net with its medium; no side crashes. The last two arguments: as for `check_channel_model`."""
     net = compose(partition, rules, Crashes(life_cycle=False))
     assumes = "no side crashes"
     if net.net.timed:
         assumes += (
             "; messages take no model time, and time does not advance while something can happen"
         )
-    if left_out:
-        assumes += f"; messages of {', '.join(left_out)}, between two robots, arrive at once"
 
     def full(limits: Limits) -> Answer:
         return _explored(
@@ -217,12 +217,15 @@ def whole(
         return full(run.limits)
     if shown is not None and not by_cell.why_not(partition, rules):
         return _by_cell(shown, assumes, 0.0)
-    if not by_cell.why_not(partition, rules) and min(first, most) > FILES_FROM:
-        part = full(replace(run.limits, max_states=FILES_FROM))
-        if part.answer != "inconclusive" or part.why != _incomplete("states"):
-            return part
+    is_too_large = running_states > min(LARGE, most)
+    if not by_cell.why_not(partition, rules) and (is_too_large or min(first, most) > FILES_FROM):
+        if not is_too_large:
+            part = full(replace(run.limits, max_states=FILES_FROM))
+            if part.answer != "inconclusive" or part.why != _incomplete("states"):
+                return part
         began = time.perf_counter()
-        limits = replace(run.limits, max_states=run.limits.max_states or MOST_IN_TURNS)
+        limit = max(run.limits.max_states or MOST_IN_TURNS, running_states)
+        limits = replace(run.limits, max_states=limit)
         found = by_cell.shown(partition, rules, storage, limits, run.options)
         if found is not None:
             return _by_cell(found, assumes, time.perf_counter() - began)
@@ -323,6 +326,13 @@ def exchange(
         f"at most {crashes.supervisor} crash{'es' * (crashes.supervisor != 1)} of the supervisor and "
         f"{crashes.robots} of {name}, {crashes.all_sessions} session{'s' * (crashes.all_sessions != 1)}"
     )
+    others = [
+        c.file
+        for c in partition.channels
+        if owner in (c.writer, c.reader) and 0 not in (c.writer, c.reader)
+    ]
+    if others:
+        assumes += f"; no crash harms messages of {', '.join(others)}, between two robots"
     return _explored(
         f"the exchange with {name}",
         "whichever side crashes and is started again, at whatever time: no message is lost without a crash, none is "

@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterator
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channel_model.faults import Fault
 from pn2code.channel_model.life_cycle import LifeCycle
-from pn2code.channel_model.places import ChannelModel, Crashes, Files, modelled
+from pn2code.channel_model.places import ChannelModel, Crashes, Files
 from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
@@ -31,7 +31,7 @@ from pn2code.net.flat import ArcKind
 
 def repeated_unseen(partition: Partition) -> frozenset[int]:
     """The transitions of scripts that touch no message and that may follow themselves without one that does."""
-    messages = {c.place for c in modelled(partition)}
+    messages = {c.place for c in partition.channels}
     takers: dict[int, set[int]] = {}
     puts: dict[int, set[int]] = {}
     for t in partition.net.transitions:

@@ -102,11 +102,6 @@ class ChannelModel:
     memory: tuple[tuple[int, ...], ...]
 
 
-def modelled(partition: Partition) -> tuple[Channel, ...]:
-    """The channels between the supervisor and others: the protocol has no others."""
-    return tuple(c for c in partition.channels if 0 in (c.writer, c.reader))
-
-
 @record
 class _Program:
     """What an owner holds while its process lives."""
@@ -145,7 +140,7 @@ class Parts:
         self.ended: list[int] = []
         self.sides = [self._side(o) for o in range(len(partition.owners))]
         self.done = b.place("medium.supervisor.done", b.unit)
-        self.files = [self._files(c) for c in modelled(partition)]
+        self.files = [self._files(c) for c in partition.channels]
         self.budgets = [
             b.place(
                 f"medium.{side.name}.crashes left",

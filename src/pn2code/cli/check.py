@@ -18,8 +18,10 @@ from pn2code.cli.options import (
     FormatOption,
     InputOption,
     IntBitsOption,
+    JobsOption,
     JsonOption,
     MaxSecondsOption,
+    MaxStatesOption,
     SetOption,
     code_of,
     parse_values,
@@ -76,6 +78,8 @@ def check(
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     max_seconds: MaxSecondsOption = None,
+    max_states: MaxStatesOption = None,
+    jobs: JobsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.
@@ -97,10 +101,13 @@ def check(
             inputs=inputs,
             int_bits=int_bits,
             max_seconds=max_seconds,
+            max_states=max_states,
+            jobs=jobs,
             form=form,
         )
         return
-    _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full)
+    given = {"max-states": max_states, "jobs": jobs}
+    _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full, **given)
     d = Diagnostics()
     with in_time(max_seconds, net, "the net was checked", form):
         checked = examined(

@@ -35,6 +35,8 @@ def check_geometry(
     inputs: Path | None,
     int_bits: int,
     max_seconds: float | None,
+    max_states: int | None,
+    jobs: int | None,
     form: Format,
 ) -> None:
     """Looks at all moves and pairs of a cell, prints what is found, and leaves with its exit code."""
@@ -47,7 +49,8 @@ def check_geometry(
         opened = open_net(path, values, form, int_bits=int_bits, warnings=d, inputs=inputs)
     folder = traces or Path(f"{opened.flat.name}.geometry")
     is_new = not folder.exists()
-    limits = Limits(deadline=Deadline.of_command(None), threads=cores())
+    deadline = Deadline.of_command(None)
+    limits = Limits(max_states=max_states, deadline=deadline, threads=jobs or cores())
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
         with in_time(max_seconds, path, late, form), playing(form), line as progress:

@@ -49,6 +49,8 @@ _EDITED = (
     "              (this script is not the one that is generated: what it does in states that were not reached here "
     "was not compared)"
 )
+MOST_NAMES = 8
+"""Of transitions that never occur."""
 
 
 def conform(
@@ -191,7 +193,7 @@ def _supervisor(report: Report) -> list[str]:
             *_path_lines(report.deviation.way),
         ]
     some = "all" if report.complete else f"a part ({report.why}),"
-    lines = [f"supervisor    agrees with the net in {some} {counts}"]
+    lines = [f"supervisor    agrees with the net in {some} {counts}", *_idle(report)]
     if report.overruns:
         lines.append(
             "              in the net a message can arrive before the previous one has been taken:"
@@ -209,8 +211,19 @@ def _robot(report: RobotReport, is_edited: bool) -> list[str]:
         f"{name} agrees with its page in {some} {report.states:,} states: {report.marks:,} firings of "
         f"{report.transitions} of its {report.all_transitions} transitions, "
         f"{report.commands:,} commands",
+        *_idle(report),
         *([_EDITED] if is_edited else []),
     ]
+
+
+def _idle(report: Report | RobotReport) -> list[str]:
+    """The transitions of which nothing was compared, since they never occurred."""
+    names = [f"`{name}`" for name in report.idle]
+    if not names:
+        return []
+    shown = ", ".join(names[:MOST_NAMES])
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return [f"              in none of them occur {shown}{more}"]
 
 
 def _path_lines(way: tuple[str, ...], most: int = 30) -> list[str]:

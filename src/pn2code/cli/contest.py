@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
@@ -14,10 +13,11 @@ import typer
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
-from pn2code.contest.engine import Space, engine
-from pn2code.contest.examinations import ALL, SPACE, Asked, asked
+from pn2code.contest.asking import UNKNOWN, Asking
+from pn2code.contest.engine import engine
+from pn2code.contest.examinations import ALL
 from pn2code.contest.formulas import FormulaError
-from pn2code.contest.portfolio import METHODS, answers, space
+from pn2code.contest.portfolio import METHODS
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
@@ -38,7 +38,6 @@ The folder holds `model.pnml` and the XML files of the examinations (docs/contes
 """
 Examination = StrEnum("Examination", {name: name for name in ALL})  # type: ignore[misc]
 Method = StrEnum("Method", {name: name for name in METHODS})  # type: ignore[misc]
-UNKNOWN = "CANNOT_COMPUTE"
 
 
 def contest(
@@ -57,48 +56,42 @@ def contest(
     """
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
-    found = None
-    try:
-        with suppress(TimeIsOverError), deadline.enforced():
-            found = _read(folder, examination)
-    except FormulaError as error:
-        typer.echo(f"pn2code: {error}", err=True)
-        raise typer.Exit(Exit.MODEL) from None
-    except GameError as problem:  # more tokens than are made
-        typer.echo(f"pn2code: the initial marking cannot be made: {problem.message}", err=True)
-    if found is None:
+    d = Diagnostics()
+    net: Tables | FlatNet | None = None
+    with suppress(TimeIsOverError), deadline.enforced():
+        net = ptnet.tables_of(folder / "model.pnml")
+        if net is None:
+            net = front.load(folder / "model.pnml", d, compute=compute)
+            if net is None:
+                stop(d, Format.FULL)
+    if net is None:
         typer.echo(UNKNOWN)
         return
-    tables, questions = found
-    d = Diagnostics()
     with engine(d) as program:
         if program is None:
             stop(d, Format.FULL)
-        left = max(0.0, deadline.left or 0.0)
-        if examination == SPACE:
-            sizes = space(program, tables, seconds=left, mebibytes=memory, only=only or "")
-            lines = _space(sizes)
-        else:
-            lines = _formulas(program, tables, questions, left, memory, only)
-        for line in lines:
-            typer.echo(line)
-
-
-def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]] | None:
-    """The net and what is asked of it; None, with the reason on the standard error, if it cannot be unfolded.
-
-    It leaves with a report when the net is wrong.
-    """
-    d = Diagnostics()
-    tables = ptnet.tables_of(folder / "model.pnml")
-    if tables is None:
-        net = front.load(folder / "model.pnml", d, compute=compute)
-        if net is None:
-            stop(d, Format.FULL)
-        tables = _tables(net, d)
-    if tables is None:
-        return None
-    return tables, [] if examination == SPACE else asked(tables, examination, folder)
+        asking = Asking(
+            program,
+            examination,
+            folder,
+            deadline,
+            mebibytes=memory,
+            only=only or "",
+            say=lambda why: typer.echo(f"pn2code: {why}", err=True),
+        )
+        try:
+            if isinstance(net, Tables):
+                lines = asking.of_tables(net)
+            else:
+                lines = asking.of_net(net, lambda net: _tables(net, d))
+            for line in lines:
+                typer.echo(line)
+        except FormulaError as error:
+            typer.echo(f"pn2code: {error}", err=True)
+            raise typer.Exit(Exit.MODEL) from None
+        except GameError as problem:  # more tokens than are made
+            typer.echo(f"pn2code: the initial marking cannot be made: {problem.message}", err=True)
+            typer.echo(UNKNOWN)
 
 
 def _tables(net: FlatNet, d: Diagnostics) -> Tables | None:
@@ -115,37 +108,3 @@ def _tables(net: FlatNet, d: Diagnostics) -> Tables | None:
     except ValueError as error:
         typer.echo(f"pn2code: {error}", err=True)
         return None
-
-
-def _formulas(
-    program: Path,
-    tables: Tables,
-    questions: list[Asked],
-    seconds: float,
-    mebibytes: int,
-    only: Method | None,
-) -> Iterator[str]:
-    unknown = {q.name: q.why_not for q in questions}
-    found = answers(
-        program, tables, questions, seconds=seconds, mebibytes=mebibytes, only=only or ""
-    )
-    for result in found:
-        del unknown[result.name]
-        yield f"FORMULA {result.name} {str(result.value).upper()} TECHNIQUES {result.techniques}"
-    for name, why in unknown.items():
-        if why:
-            typer.echo(f"pn2code: {name}: {why}", err=True)
-        yield f"FORMULA {name} {UNKNOWN}"
-
-
-def _space(found: Space | None) -> Iterator[str]:
-    if found is None:
-        yield UNKNOWN
-        return
-    for what, number in (
-        ("STATES", found.states),
-        ("TRANSITIONS", found.arcs),
-        ("MAX_TOKEN_IN_PLACE", found.tokens_in_place),
-        ("MAX_TOKEN_PER_MARKING", found.tokens_in_marking),
-    ):
-        yield f"STATE_SPACE {what} {number} TECHNIQUES {found.method}"

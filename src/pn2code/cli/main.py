@@ -20,6 +20,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 import pn2code
+from pn2code.cli import light_help
 from pn2code.cli.options import Exit
 
 VERBS = {
@@ -63,6 +64,7 @@ class _Verbs(TyperGroup):
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """The list of verbs."""
+        light_help.load()
         with self._listing():
             super().format_help(ctx, formatter)
 
@@ -90,6 +92,15 @@ class _Verbs(TyperGroup):
         return None
 
 
+class _Verb(TyperCommand):
+    """One verb."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Its options."""
+        light_help.load()
+        super().format_help(ctx, formatter)
+
+
 def _named(verb: str) -> Any:
     """A verb as it stands in the list."""
     return TyperCommand(verb, help=VERBS[verb])
@@ -99,7 +110,10 @@ def _command(verb: str) -> Any:
     module = importlib.import_module(f"pn2code.cli.{verb}")
     single = typer.Typer(add_completion=False)
     function = getattr(module, verb)
-    single.command(verb, help=_flowing(function.__doc__), epilog=module.EPILOG)(function)
+    decorated = single.command(
+        verb, cls=_Verb, help=_flowing(function.__doc__), epilog=module.EPILOG
+    )
+    decorated(function)
     return typer.main.get_command(single)
 
 

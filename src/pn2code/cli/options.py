@@ -73,6 +73,25 @@ MaxSecondsOption = Annotated[
     float | None, seconds_option("Stop after S seconds, without an answer (exit code 3).")
 ]
 """Of verbs that say nothing of what they have not done to the end."""
+JobsOption = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        max=64,
+        help="Explore and sweep with N processes; what is found does not depend on it.  (default: one for each core)",
+    ),
+]
+"""Of verbs that sweep moves."""
+MaxStatesOption = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help="Look at N states of the cell at most.  (default: 300,000; never more than 3,000,000)",
+    ),
+]
+"""Of verbs that go through the states of a cell one by one."""
 
 
 def port_option(help_text: str) -> Any:

@@ -19,6 +19,7 @@ from pn2code.cli.options import (
     InputOption,
     JsonOption,
     MaxSecondsOption,
+    MaxStatesOption,
     SetOption,
     finite,
     parse_values,
@@ -78,6 +79,7 @@ def time(
     as_json: JsonOption = False,
     inputs: InputOption = None,
     max_seconds: MaxSecondsOption = None,
+    max_states: MaxStatesOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -106,7 +108,7 @@ def time(
         if out is not None:
             out.mkdir(parents=True, exist_ok=True)
         with in_time(max_seconds, cell, late, form), playing(form), line as progress:
-            limits = Limits(threads=cores())
+            limits = Limits(max_states=max_states, threads=cores())
             found = look(opened, layout, limits, out, d, progress.stage)
         if found is None or d.has_errors:
             stop(d, form)

@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, NoReturn
 
 import typer
@@ -320,13 +321,18 @@ def verify(
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
     )
-    checks = Checks(controller=check_controller, channel_model=check_channel_model)
     is_cell = opened.config is not None and check_controller
     with (
         _folder(traces, stem(opened), wanted=bool(most_traces or asked or is_cell)) as folder,
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
+        TemporaryDirectory(prefix="pn2code-") as scratch,
     ):
+        checks = Checks(
+            controller=check_controller,
+            channel_model=check_channel_model,
+            graph=Path(scratch) / "graph.jsonl" if durations else None,
+        )
         for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
             check_writable(path, option)  # perhaps in the folder that was just made
         line = ProgressLine(

@@ -46,6 +46,7 @@ class RunNotes:
         self._holder = {
             f"{kind}.{i + 1}": "" for kind, count in self._created.items() for i in range(count)
         }
+        self._holder |= config.tools_at_start
         self._busy_until = dict.fromkeys(self._names[1:], 0.0)
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._names[1:]}
         self._calls = Calls()
@@ -84,7 +85,7 @@ class RunNotes:
 
     def _part(self, robot: str, effect: str, part: str) -> str | None:
         """What has become of a part: it has the next number of its kind, and one holder at most."""
-        kind = part.rpartition(".")[0]
+        kind = part.rpartition(".")[0] or part  # of a tool there is one
         if effect == "creates":
             self._created[kind] += 1
             if part != f"{kind}.{self._created[kind]}":
@@ -92,10 +93,10 @@ class RunNotes:
         elif part not in self._holder:
             return f"`{robot}` {effect} part `{part}`, which is not there"
         holder = self._holder.pop(part, "")
-        if holder != (robot if effect == "releases" else ""):
+        if holder != (robot if effect in ("releases", "uncouples") else ""):
             return f"`{robot}` {effect} part `{part}`, which {f'`{holder}`' if holder else 'nobody'} holds"
         if effect != "removes":
-            self._holder[part] = robot if effect == "takes" else ""
+            self._holder[part] = robot if effect in ("takes", "couples") else ""
         self._handled[robot].append((effect, kind))
         return None
 

@@ -66,6 +66,7 @@ class RobotReport:
         deviation: in words; None: there is none.
         way: what happened before the deviation.
         why: what the token game did not evaluate to its end; "": nothing.
+        idle: names of its transitions that the script announced in none of these states, in order of the net.
     """
 
     robot: str
@@ -78,6 +79,7 @@ class RobotReport:
     deviation: str | None = None
     way: tuple[str, ...] = ()
     why: str = ""
+    idle: tuple[str, ...] = ()
 
 
 @frozen
@@ -189,17 +191,20 @@ class _Product:
             deviation = str(found)
         except GivenUpError as limit:
             given_up = str(limit)
+        owners = self._partition.transition_owner
+        own = (t for t in self._net.transitions if owners[t.index] == self._owner)
         return RobotReport(
             self._name,
             len(parent),
             self._marks,
             len(self._marked),
-            self._partition.transition_owner.count(self._owner),
+            owners.count(self._owner),
             self._commands,
             not waiting and deviation is None and not given_up,
             deviation,
             tuple(self._path(parent, at)) if deviation else (),
             given_up,
+            tuple(t.name for t in own if t.name not in self._marked),
         )
 
     def _path(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:

@@ -53,6 +53,7 @@ class Report:
         cycles: of the program, each compared.
         firings: of the supervisor in these.
         transitions: indices of those that occurred in these, of the `all_transitions` that are the supervisor's.
+        idle: names of the others, in order of the net.
         received, sent: messages to and from the supervisor.
         stops: cycles in which it had to stop, and did.
         complete: every state that can be reached was seen; otherwise `why` says what ended it.
@@ -65,6 +66,7 @@ class Report:
     firings: int = 0
     transitions: set[int] = field(default_factory=set)
     all_transitions: int = 0
+    idle: tuple[str, ...] = ()
     received: int = 0
     sent: int = 0
     stops: int = 0
@@ -134,6 +136,7 @@ class _Product:
         self._late: list[tuple[_Move, ...]] = []  # ways to sights that are too deep to go on from
 
     def run(self) -> Report:
+        net, owners = self._partition.net, self._partition.transition_owner
         try:
             self._run()
         except _DeviationError as deviation:
@@ -144,6 +147,8 @@ class _Product:
             self.report.complete = False
             self.report.why = str(limit)
         self.report.sights = len(self._seen)
+        own = (t for t in net.transitions if owners[t.index] == SUPERVISOR)
+        self.report.idle = tuple(t.name for t in own if t.index not in self.report.transitions)
         return self.report
 
     def _run(self) -> None:

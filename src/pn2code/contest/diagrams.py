@@ -10,7 +10,9 @@ nothing else.
 
 from __future__ import annotations
 
+import threading
 import time
+from collections.abc import Iterator
 from functools import cached_property
 
 from pn2code.contest.engine import Task
@@ -30,29 +32,29 @@ class Diagrams:
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
+        self.lock = threading.Lock()
 
     @cached_property
     def orders(self) -> list[list[int]]:
         """The most promising one first."""
         return orders(len(self.tables.initial), self.tables.pre, self.tables.post)
 
-    def sizes(self, seconds: float, mebibytes: int) -> list[list[Task]]:
+    def sizes(self, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
 
-        Each order has a short time at first; the most promising two have what is left, when the orders are made.
+        Each order has a short time at first; the most promising two have what is left. The orders are made when the
+        first lane asks for a task, since this takes long for large nets.
         """
         ends = time.monotonic() + seconds
-        rows = [self.orders[:1], self.orders[1:2]]
-        shares: tuple[float, ...] = (1.0,)
-        if len(self.orders) > 2:
-            shares = _SHARES
-            rows = [[*self.orders[i::2][:3], self.orders[i]] for i in range(2)]
+        return [self._lane(which, ends, mebibytes) for which in range(2)]
+
+    def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
+        with self.lock:
+            orders = self.orders
+        shares: tuple[float, ...]
+        row, shares = orders[which : which + 1], (1.0,)
+        if len(orders) > 2:
+            row, shares = [*orders[which::2][:3], orders[which]], _SHARES
         seconds = max(0.0, ends - time.monotonic())
-        return [
-            [
-                Task("sizes", self.tables.text([], order), share * seconds, mebibytes)
-                for order, share in zip(row, shares[-len(row) :], strict=True)
-            ]
-            for row in rows
-            if row
-        ]
+        for order, share in zip(row, shares[len(shares) - len(row) :], strict=True):
+            yield Task("sizes", self.tables.text([], order), share * seconds, mebibytes)

@@ -141,6 +141,9 @@ def ask(
         finally:
             for lane in running:
                 lane.end()
+            patience = time.monotonic() + _GRACE_S / 4
+            for lane in running:
+                lane.join(max(0.0, patience - time.monotonic()))
 
 
 def _time_left(until: float | None) -> float | None:
@@ -197,7 +200,6 @@ class _Lane(threading.Thread):
             self.is_over = True
             if self.process is not None:
                 self.process.kill()
-        self.join(_GRACE_S)
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:

@@ -44,12 +44,12 @@ MOST_SPLITS = 40
 """Fractions that are split one inside the other."""
 
 
-def wait_for_solver() -> None:
+def wait_for_solver(patience: float = LONGEST_WAIT_S) -> None:
     """Until no linear program is being solved, but not for long: a command leaves without the end of the interpreter.
 
     Those who search must have been told before that it is over.
     """
-    if _solving.acquire(timeout=LONGEST_WAIT_S):
+    if _solving.acquire(timeout=patience):
         _solving.release()
 
 

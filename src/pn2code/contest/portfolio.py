@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -21,10 +21,13 @@ from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
-from pn2code.contest.structural import REDUCTION, Question, Structural, question
+from pn2code.contest.playing import TECHNIQUE as PLAYED
+from pn2code.contest.playing import Play, Sought, holds, said_in_words
+from pn2code.contest.structural import REDUCTION, Question, Structural, question, terms
 from pn2code.contest.tables import MOST, Tables
 from pn2code.contest.temporal import Reach, Temporal, Wanted, Whole
 from pn2code.properties.ltl import TooLargeError
+from pn2code.semantics.game.token_game import Game
 
 METHODS = {
     "structure": ("reach", "bound"),
@@ -57,7 +60,8 @@ _WEIGHT = 4.0
 _LEAST_SLICE_S = 0.25
 """With less for each of the questions they are asked together."""
 _GRACE_S = 0.5
-"""So much later than its time a process may say what it knows."""
+_GRACE = 0.05
+"""So much later than its time, but by no more than that part of it, a process may say what it knows."""
 
 
 @frozen
@@ -139,8 +143,12 @@ def answers(
     seconds: float,
     mebibytes: int = 4096,
     only: str = "",
+    game: Game | None = None,
 ) -> Iterator[Result]:
     """The answers that can be had, in the order in which they come.
+
+    Of a net without its colours (uncoloured.py) only what is not reachable, and what places hold at most, is believed;
+    what is reachable is found by the token game of the coloured net.
 
     Args:
         program: the engine.
@@ -149,11 +157,13 @@ def answers(
         seconds: for all of them together.
         mebibytes: of memory for all that runs side by side.
         only: a method, alone; "": all.
+        game: the coloured net, if the tables are that net without its colours.
 
     Raises:
         RuntimeError: two methods contradict each other, or the engine did not understand its tables.
     """
-    portfolio = _Portfolio(program, tables, asked, time.monotonic() + seconds, mebibytes, only)
+    ends = time.monotonic() + seconds
+    portfolio = _Portfolio(program, tables, asked, ends, mebibytes, only, game)
     yield from portfolio.at_once()
     try:
         yield from portfolio.rounds()
@@ -170,10 +180,14 @@ class _Portfolio:
         ends: float,
         mebibytes: int,
         only: str,
+        game: Game | None,
     ) -> None:
+        assert (game is None) == (tables.at_first is None)
+        self.is_uncoloured = game is not None
         self.program = program
         self.tables = tables
         self.ends = ends
+        self.grace = _grace(ends - time.monotonic())
         self.mebibytes = mebibytes
         self.only = only
         self.said: Said = SimpleQueue()
@@ -195,8 +209,12 @@ class _Portfolio:
                     tables, line.asked.kind, line.asked.formula, is_whole=is_whole
                 )
                 self._ask_for(line)
+        self.play = None if game is None else Play(game, self._sought, self.said, ends)
+        self.sought: dict[int, Sought] = {}
         if only in ("", "structure"):
             self._start_structural()
+        if self.play is not None and only in ("", "walk"):
+            self.play.start()
 
     def _ask_for(self, line: _Line) -> None:
         """What a formula wants to know, as far as it was not asked before."""
@@ -210,6 +228,8 @@ class _Portfolio:
                 place.question.is_done = True
 
     def _add(self, line: _Line, temporal: Temporal, wanted: Wanted) -> None:
+        if self.is_uncoloured and not isinstance(wanted, Reach):
+            return
         try:
             kind = "reach" if isinstance(wanted, Reach) else temporal.kind
             part = Part(kind, temporal.text(wanted))
@@ -224,8 +244,31 @@ class _Portfolio:
             if place.question is not None:
                 self.structural.add(place.question)
 
+    def _sought(self) -> list[Sought]:
+        """What is open, for the token game; the other thread may add more meanwhile."""
+        for n in range(len(self.sought), len(self.places)):
+            place = self.places[n]
+            words = place.part.text.split(" ", 1)
+            if isinstance(place.wanted, Reach):
+                self.sought[n] = Sought(n, holds(self.tables, place.wanted.condition))
+            elif place.part.kind == "reach":
+                names = list(self.tables.transitions)
+                self.sought[n] = Sought(n, said_in_words(words[1], names))
+            elif place.part.kind == "bound":
+                self.sought[n] = Sought(n, None, terms(words[1]))
+            else:
+                self.sought[n] = Sought(n, lambda sight: False)
+        return [s for n, s in self.sought.items() if self.places[n].is_open]
+
+    def _can_be_asked(self, number: int) -> bool:
+        """Whether the net knows of a question: without colours nothing of dead markings, and no bounds."""
+        part = self.places[number].part
+        return not self.is_uncoloured or (part.kind == "reach" and part.text != "reach dead")
+
     def _question(self, number: int) -> Question | None:
         place = self.places[number]
+        if not self._can_be_asked(number) and place.part.kind != "bound":
+            return None
         if isinstance(place.wanted, Whole):
             of_time = place.wanted
             return Question(
@@ -250,7 +293,9 @@ class _Portfolio:
     def end(self) -> None:
         """Nothing is to be asked any more."""
         if self.structural is not None:
-            self.structural.end()
+            self.structural.end(self.grace)
+        if self.play is not None:
+            self.play.end()
 
     def at_once(self) -> Iterator[Result]:
         """Without places or transitions nothing has to be asked."""
@@ -266,6 +311,7 @@ class _Portfolio:
         while not all(line.is_done for line in self.lines):
             left = self.ends - time.monotonic()
             open_ = [n for n, p in enumerate(self.places) if p.is_open]
+            open_ = [n for n in open_ if self._can_be_asked(n)]
             if number >= _SIDE_ROUNDS:
                 open_ = [n for n in open_ if not (self._is_side(n) and self._is_whole(n))]
             if number > len(_ROUNDS_S):  # only what has come since
@@ -275,7 +321,7 @@ class _Portfolio:
             self.given = len(self.places)
             length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
             lanes = self._lanes(open_, number, length)
-            for answer in ask(self.program, lanes, self.said, until=self.ends + _GRACE_S):
+            for answer in ask(self.program, lanes, self.said, until=self.ends + self.grace):
                 assert isinstance(answer, Answer)
                 yield from self._noted(answer)
                 if all(line.is_done for line in self.lines):
@@ -290,12 +336,9 @@ class _Portfolio:
                 return
 
     def _structural_alone(self) -> Iterator[Answer]:
-        while (
-            self.structural is not None
-            and time.monotonic() < self.ends
-            and any(p.is_open for p in self.places)
-        ):
-            is_running = self.structural.is_alive()
+        others = [t for t in (self.structural, self.play) if t is not None]
+        while others and time.monotonic() < self.ends and any(p.is_open for p in self.places):
+            is_running = any(t.is_alive() for t in others)
             try:
                 found = self.said.get(timeout=_POLL_S)
             except Empty:
@@ -311,6 +354,14 @@ class _Portfolio:
         place = self.places[answer.number]
         line = place.line
         value = answer.value
+        if self.is_uncoloured and answer.method != PLAYED and answer.is_final:
+            if place.part.kind == "bound":
+                known = self._at_most(place, int(value))
+                if known is None:
+                    return
+                value = known
+            elif value:
+                return
         if not answer.is_final:
             known = None if place.question is None else place.question.learn(least=int(value))
             if known is None:
@@ -340,6 +391,12 @@ class _Portfolio:
                 if p.line is line and p.question is not None:
                     p.question.is_done = True
             yield result
+
+    def _at_most(self, place: _Place, value: int) -> int | None:
+        """Without colours places hold at most that; what they hold, if that is known now."""
+        assert place.question is not None
+        place.question.is_done = False
+        return place.question.learn(most=value)
 
     def _learn(self, line: _Line, wanted: Wanted, value: bool, method: str) -> None:
         """Put an answer into a formula."""
@@ -480,12 +537,17 @@ class _Portfolio:
         return orders[which % len(orders)] if orders else ()
 
 
+def _grace(seconds: float) -> float:
+    """How long after the end of so much time a process is waited for."""
+    return max(0.0, min(_GRACE_S, _GRACE * seconds))
+
+
 def _too_large(question: str) -> bool:
     """Whether a question about a reduced net has a factor that the engine does not read."""
     return any(int(number) > MOST for number in re.findall(r"\d{10,}", question))
 
 
-def _until(ends: float, tasks: Sequence[Task]) -> Iterator[Task]:
+def _until(ends: float, tasks: Iterable[Task]) -> Iterator[Task]:
     """None of them goes on after the end, however long it took to make them."""
     for task in tasks:
         left = ends - time.monotonic()
@@ -498,12 +560,12 @@ def space(
 ) -> Space | None:
     """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
     ends = time.monotonic() + seconds
-    lanes = []
+    lanes: list[Iterable[Task]] = []
     if only in ("", "explore"):
-        lanes.append([Task("count", tables.text([]), seconds, mebibytes // 3)])
+        lanes.append(Task("count", tables.text([]), seconds, mebibytes // 3) for _ in range(1))
     if only in ("", METHOD):
         lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(program, [_until(ends, lane) for lane in lanes], until=ends + _GRACE_S):
+    for found in ask(program, [_until(ends, lane) for lane in lanes], until=ends + _grace(seconds)):
         if isinstance(found, Space):
             return found
     return None

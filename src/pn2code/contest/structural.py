@@ -19,7 +19,7 @@ from pn2code.base.frozen import record
 from pn2code.contest import conditions
 from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, TooLargeError
 from pn2code.contest.engine import Answer, Said
-from pn2code.contest.equation import StateEquation, wait_for_solver
+from pn2code.contest.equation import LONGEST_WAIT_S, StateEquation, wait_for_solver
 from pn2code.contest.examinations import Part
 from pn2code.contest.formulas import Formula
 from pn2code.contest.reduction.reduce import Reduced, reduced_for
@@ -122,14 +122,14 @@ def question(number: int, part: Part, tables: Tables) -> Question | None:
     try:
         if part.kind == "reach":
             return Question(number, "reach", conditions.parsed(words, tables.pre))
-        sum_ = AtMost(_terms(words), 0)
+        sum_ = AtMost(terms(words), 0)
     except TooLargeError:
         return None
     least = sum(n * tables.initial[p] for p, n in sum_.factors)
     return Question(number, "bound", sum_, least)
 
 
-def _terms(words: str) -> tuple[tuple[int, int], ...]:
+def terms(words: str) -> tuple[tuple[int, int], ...]:
     """The terms of `sum N (place factor).. limit`."""
     numbers = list(map(int, words.split()[2:-1]))
     return tuple(zip(numbers[::2], numbers[1::2], strict=True))
@@ -182,10 +182,10 @@ class Structural(threading.Thread):
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
 
-    def end(self) -> None:
-        """Stop at the next step; no linear program is being solved afterwards."""
+    def end(self, patience: float = LONGEST_WAIT_S) -> None:
+        """Stop at the next step; no linear program is being solved afterwards, unless it takes longer than that."""
         self.is_over.set()
-        wait_for_solver()
+        wait_for_solver(patience)
 
     def _left(self) -> float:
         left = self.ends - time.monotonic()

@@ -42,6 +42,7 @@ class Tables:
         post: by transition, what it puts.
         places: id of a place in the file -> its places here.
         transitions: id of a transition in the file -> its transitions here.
+        at_first: of a net without colours (uncoloured.py): what is enabled in the initial marking of the coloured one.
         enabled: that one of some transitions is enabled, in the engine's own words, once it was asked for.
         written: "arcs" -> the arcs, and the same in the engine's own words, once they were asked for.
     """
@@ -51,6 +52,7 @@ class Tables:
     post: tuple[Mapping[int, int], ...]
     places: Mapping[str, tuple[int, ...]]
     transitions: Mapping[str, tuple[int, ...]]
+    at_first: frozenset[str] | None = None
     enabled: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
     written: dict[str, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
 

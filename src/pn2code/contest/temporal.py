@@ -18,9 +18,10 @@ from collections.abc import Iterator
 from pn2code.base.frozen import frozen
 from pn2code.contest import conditions, rewriting, stepwise
 from pn2code.contest.approximation import follows, is_nested, outline, suffices
-from pn2code.contest.formulas import Formula, FormulaError, Op, Truth
+from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Truth
 from pn2code.contest.rewriting import is_plain
 from pn2code.contest.tables import Tables
+from pn2code.contest.weaker import weaker
 
 MOST_LEAVES = 12
 """Parts about one marking that are asked for, of one formula."""
@@ -97,7 +98,10 @@ class Temporal:
             TooLargeError: its automaton is too large.
         """
         if isinstance(asked, Reach):
-            return f"reach {self.tables.formula(asked.condition)}"
+            condition = asked.condition
+            if self.tables.at_first is not None:
+                condition = weaker(condition)
+            return f"reach {self.tables.formula(condition)}"
         return stepwise.question(self.tables, self.kind, asked.formula, {})
 
     def learn(self, asked: Wanted, answer: bool) -> None:
@@ -281,6 +285,8 @@ def _value(tables: Tables, f: Formula) -> bool:
             return all(_value(tables, p) for p in parts)
         case Op("or", parts):
             return any(_value(tables, p) for p in parts)
+    if tables.at_first is not None and isinstance(f, Fireable):
+        return not tables.at_first.isdisjoint(f.transitions)
     words = tables.formula(f).split()
     if words[0] == "enabled":
         found = map(int, words[2:])

@@ -31,7 +31,7 @@ from pn2code.robot.clamps import (
     on_nothing,
     taken_along,
 )
-from pn2code.robot.commands import Command, Handling, ToolAction
+from pn2code.robot.commands import CHANGES, Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
@@ -107,7 +107,8 @@ class Doing:
             return []
         parts = self.start.parts.present
         self._shown.show(parts.values())
-        found = [(p, overlap(self._shown.backend, p.name, ROUNDING)) for p in parts.values()]
+        standing = [p for p in parts.values() if not p.holder]
+        found = [(p, overlap(self._shown.backend, p.name, ROUNDING)) for p in standing]
         return [(part, trouble) for part, trouble in found if trouble is not None]
 
     def _kept(self, parts: Parts) -> Contents:
@@ -238,11 +239,12 @@ class Doing:
                 if stand is not None:
                     tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
                 place = self._around(command.handling, tcp)
-                handled.append(place)
+                handled += place
                 doing = _Handled(owner, command.handling, tcp, standing)
                 try:
                     before, (contents, doubt) = contents, self._handle(doing, contents)
-                    handled += self._with_riders(owner, place, (before, contents))
+                    for spot_ in place:
+                        handled += self._with_riders(owner, spot_, (before, contents))
                 except PartFault as fault:
                     done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
                     break
@@ -267,6 +269,7 @@ class Doing:
         there = [
             (p, tcps[p.holder] @ p.frame if p.holder else parts.world(p))
             for p in parts.present.values()
+            if not p.is_tool
             if not p.holder or p.holder in tcps  # of one that moves nobody knows where it is
         ]
         return nearest(self._cell, held, there)
@@ -309,12 +312,17 @@ class Doing:
                 out.append((parts.world(part)[:3, 3], ground.radius(part.kind.name)))
         return out
 
-    def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
-        """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""
+    def _around(self, handling: Handling, tcp: Array | None) -> list[tuple[Array, float]]:
+        """Where a part is handled, and how far around that it reaches, whichever it is and however it lies.
+
+        Tools stand on no turntable.
+        """
+        if handling.effect in CHANGES:
+            return []
         frame = matrix_of(self._cell.places[handling.place]) if handling.place else tcp
         assert frame is not None, "only a tool handles parts where it is"
         kind = self._cell.parts[handling.part]
-        return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
+        return [(frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance)]
 
     def _with_riders(
         self, owner: str, place: tuple[Array, float], some: Iterable[Contents]
@@ -397,7 +405,27 @@ class Doing:
         change, parts = found[0]
         does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
+        doubt = self._expect_unclamped(doing, change) or doubt
         return after, self._expect_apart(doing, change, parts) or doubt
+
+    def _expect_unclamped(self, doing: _Handled, change: PartChange) -> str:
+        """Whether a part that leaves the cell is in no clamp that holds it.
+
+        Gives why that is not known; "": it is so. Raises PartFault if it is not so.
+        """
+        if change.effect != "removes":
+            return ""
+        kind = self._cell.parts[doing.handling.part]
+        doubt = ""
+        for held in holding(self._cell, kind, matrix_of(change.pose)):
+            own = next((s for s in doing.standing if s.robot == doing.owner), None)
+            if own is None or held.device.name != doing.owner:
+                # Another program moves it, perhaps meanwhile.
+                does = f"`{doing.owner}` removes `{change.part}`"
+                doubt = f"{does}: whether `{held.name}` has let go then is not followed"
+            elif held.holds(own.q):
+                raise PartFault(held.words(doing.owner, change.part, own.q, "removes"))
+        return doubt
 
     def _one_of(
         self, found: list[tuple[_Done, Parts]], faults: list[PartFault], does: str
@@ -413,12 +441,14 @@ class Doing:
 
         Gives why that is not known; "": it is so. Raises PartFault if it is not so.
         """
-        if self._shown is None or change.effect not in ("releases", "creates"):
+        if self._shown is None or change.effect not in ("releases", "creates", "uncouples"):
             return ""
         self._shown.show(p for p in parts.present.values() if not p.holder)
         for stand in doing.standing:
             self._shown.backend.set_joints(stand.robot, stand.q)
         does = f"`{doing.owner}` releases `{change.part}`"
+        if change.effect == "uncouples":
+            does = f"`{doing.owner}` uncouples tool `{change.part}`"
         if change.effect == "creates":
             does = f"`{doing.owner}` puts `{change.part}` at `{doing.handling.place}`"
         doubt = ""

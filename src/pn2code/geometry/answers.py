@@ -170,6 +170,7 @@ class Layout:
         nearest: the pair of arms that comes nearest, if all keep apart.
         stopped: whether runs stop at a move that is impossible, so that nobody looked at what would come after it.
         devices: those of which something moves.
+        is_wider: the states are those of a net that does more than the cell.
     """
 
     name: str
@@ -185,6 +186,7 @@ class Layout:
     nearest: Nearest | None = None
     stopped: bool = False
     devices: tuple[str, ...] = ()
+    is_wider: bool = False
 
     @property
     def of_moves(self) -> Verdict:
@@ -220,6 +222,7 @@ class Layout:
             "open": self.open or None,
             "pairs_open": self.pairs_open or None,
             "states": self.states,
+            "wider": self.is_wider,
             "situations": self.situations,
             "pairs_compared": self.looked,
             "distances_measured": self.queries,

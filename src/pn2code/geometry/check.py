@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.util
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
-from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider
+from pn2code.geometry.large import MOST_OF_PART, answer_of
 from pn2code.geometry.look import Look, Options
 from pn2code.geometry.words import reason
 from pn2code.robot import scene
@@ -27,7 +29,7 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
-from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.limits import Limits, Order
 
 
 def _silent(_: str) -> None:
@@ -99,8 +101,21 @@ def examine(
         return Geometry((), f"the cell as it runs cannot be modelled: {problem}")
     if graph is None:
         return None
+    wider = None
     if not graph.arcs:
-        return Geometry((), reason(graph.why))
+        if graph.why in ("states", "memory"):
+            stage("exploring a net that does more and has fewer states ...")
+            wider = explore_wider(partition, opened.storage, limits, Diagnostics())
+        if wider is None or not wider.arcs:
+            return Geometry((), reason(graph.why))
+
+    def part(order: Order) -> CellGraph | None:
+        most = min(limits.max_states or MOST_OF_PART, MOST_OF_PART)
+        stage(f"exploring {most:,} states of the cell ...")
+        some = replace(limits, max_states=most, order=order)
+        return explore_cell(
+            partition, opened.storage, some, Diagnostics(), opened.initial, part=True
+        )
 
     def explore(changed: Partition) -> CellGraph | None:
         try:
@@ -110,12 +125,13 @@ def examine(
 
     stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
     folder.mkdir(parents=True, exist_ok=True)
-    options = Options(folder, stem, opened.initial, explore, stage)
+    options = Options(folder, stem, opened.initial, explore, stage, limits.threads)
     found = []
     for name, cell in cells:
         looking = Look(graph, cell, options, name)
         try:
-            found.append((looking.answer(), cell))
+            layout_ = looking.answer() if wider is None else answer_of(looking, wider, part)
+            found.append((layout_, cell))
         finally:
             looking.close()
     return Geometry(tuple(found))

@@ -11,14 +11,17 @@ Everything is swept once, in whatever situations it occurs.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
+from typing import TypeVar, cast
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity
+from pn2code.geometry.ahead import Ahead
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.contents import Contents, Load, spot, spots
@@ -41,6 +44,9 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
 
+Key = tuple[int, str]
+"""A leg, by its number, and what is moved with it."""
+_Found = TypeVar("_Found")
 _PIECES = 16
 _SAMPLES = 65
 _MOST_NEAREST = 2000
@@ -64,7 +70,7 @@ class Comparison:
         self.cell, self._planner, self._backend = cell, planner, backend
         self.sweeper = Sweeper(shown)
         self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.moving}
-        self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
+        self._boxes = {k.name: backend.part_box(k) for k in cell.kinds}
         self._tracks: dict[tuple[int, str], Track] = {}
         self._extents: dict[tuple[int, str], tuple[Array, Array]] = {}
         self._around: dict[tuple[int, str], tuple[Apart, Apart]] = {}
@@ -72,6 +78,8 @@ class Comparison:
         self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
         self._deeper: dict[Apart, Callable[[], Apart]] = {}
         self._margins: dict[int, Margins] = {}
+        self._ahead: Ahead[tuple[object, int]] | None = None
+        self._number: dict[object, int] = {}
         self.compared = 0
         self._watch = ZoneWatch(cell)
         self._tilts: dict[tuple[int, str], tuple[Verdict, str]] = {}
@@ -131,6 +139,11 @@ class Comparison:
             self._extents[key] = (low, high)
         return self._extents[key]
 
+    def _boxes_off(self, one: Key, other: Key) -> Array:
+        """How far the boxes around two legs are apart, in each direction."""
+        (low, high), (from_, to) = self._extent(one), self._extent(other)
+        return np.maximum(np.maximum(low - to, from_ - high), 0.0)
+
     def two(self, a: tuple[Leg, Load], b: tuple[Leg, Load]) -> Apart:
         """Two legs of two arms."""
         if not (self._has_shape(a) and self._has_shape(b)):
@@ -138,12 +151,12 @@ class Comparison:
         (one, first), (other, second) = self._track(*a), self._track(*b)
         if (one, other) not in self._pairs:
             self.compared += 1
-            (low, high), (from_, to) = self._extent(one), self._extent(other)
-            off = np.maximum(np.maximum(low - to, from_ - high), 0.0)
+            off = self._boxes_off(one, other)
             if off.any():
                 self._pairs[one, other] = Apart("clear", float(np.linalg.norm(off)), math.inf)
             else:
-                found = self._pairs[one, other] = self.sweeper.apart(first, second)
+                sweep = partial(self.sweeper.apart, first, second)
+                found = self._pairs[one, other] = self._swept((one, other), sweep)
                 if found.outcome == "touch":
                     self._deeper[found] = partial(self.sweeper.deepest, first, second, found)
         return self._pairs[one, other]
@@ -175,14 +188,79 @@ class Comparison:
 
     def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
         """Each leg of one with each of the other, since nobody knows how far they are."""
-        for leg, contents in a.legs:
-            for other, more in b.legs:
-                pulled = self._pulled(leg, contents, other) or self._pulled(other, more, leg)
-                if pulled is not None:
-                    yield leg, other, pulled
-                own = _meanwhile(contents.load(leg.robot), leg.robot, b, more)
-                its = _meanwhile(more.load(other.robot), other.robot, a, contents)
-                yield leg, other, self.two((leg, own), (other, its))
+        for (leg, contents), (other, more), loads in _legs_of(a, b):
+            pulled = self._pulled(leg, contents, other) or self._pulled(other, more, leg)
+            if pulled is not None:
+                yield leg, other, pulled
+            yield leg, other, self.two((leg, loads[0]), (other, loads[1]))
+
+    # --- with other processes --------------------------------------------------------------------
+
+    @contextmanager
+    def moves_ahead(self, moves: Iterable[tuple[Leg, Load]], jobs: int) -> Iterator[None]:
+        """While legs are asked how they keep apart from the scene and themselves, in about this order."""
+        tasks: dict[object, Callable[[], object]] = {}
+        for leg, load in moves if jobs > 1 else ():
+            if leg.fault is None and self._has_shape((leg, load)):
+                key, track = self._track(leg, load)
+                if key not in self._around:
+                    tasks[key] = partial(self._sweep_around, track)
+        with self._ahead_of(tasks, jobs, lambda _key: True):
+            yield
+
+    @contextmanager
+    def pairs_ahead(
+        self,
+        pairs: Iterable[tuple[Activity, Activity]],
+        jobs: int,
+        wanted: Callable[[int], bool],
+    ) -> Iterator[None]:
+        """While activities are asked how they keep apart, in about this order; `wanted`: whether one is, by place."""
+        tasks: dict[object, Callable[[], object]] = {}
+        users: dict[object, list[int]] = {}
+        for i, (a, b) in enumerate(pairs if jobs > 1 else ()):
+            for (leg, _), (other, _), loads in _legs_of(a, b):
+                moved = (leg, loads[0]), (other, loads[1])
+                if not all(map(self._has_shape, moved)):
+                    continue
+                (one, first), (two, second) = (self._track(*x) for x in moved)
+                if (one, two) not in self._pairs and not self._boxes_off(one, two).any():
+                    tasks[one, two] = partial(self.sweeper.apart, first, second)
+                    users.setdefault((one, two), []).append(i)
+        with self._ahead_of(tasks, jobs, lambda key: any(map(wanted, users[key]))):
+            yield
+
+    @contextmanager
+    def _ahead_of(
+        self,
+        tasks: Mapping[object, Callable[[], object]],
+        jobs: int,
+        wanted: Callable[[object], bool],
+    ) -> Iterator[None]:
+        keys = list(tasks)
+        counted = [partial(self._counted, sweep) for sweep in tasks.values()]
+        self._number = {key: i for i, key in enumerate(keys)}
+        try:
+            with Ahead(counted, jobs, lambda i: wanted(keys[i])) as self._ahead:
+                yield
+        finally:
+            self._ahead = None
+
+    def _counted(self, sweep: Callable[[], _Found]) -> tuple[_Found, int]:
+        """With the distances that were measured."""
+        before = self.sweeper.queries
+        found = sweep()
+        asked = self.sweeper.queries - before
+        self.sweeper.queries = before
+        return found, asked
+
+    def _swept(self, key: object, sweep: Callable[[], _Found]) -> _Found:
+        """What a sweep comes to, which somebody else may have done."""
+        if self._ahead is None or key not in self._number:
+            return sweep()
+        found, asked = self._ahead.take(self._number[key])
+        self.sweeper.queries += asked
+        return cast(_Found, found)
 
     def _pulled(self, leg: Leg, contents: Contents, other: Leg) -> Apart | None:
         """That something goes away with a part which a clamp of a device holds then; None: it does not."""
@@ -227,11 +305,11 @@ class Comparison:
             return Apart("clear", math.inf, math.inf), Apart("clear", math.inf, math.inf)
         key, track = self._track(leg, load)
         if key not in self._around:
-            self._around[key] = (
-                self.sweeper.around(track, "scene"),
-                self.sweeper.around(track, "self"),
-            )
+            self._around[key] = self._swept(key, partial(self._sweep_around, track))
         return self._around[key]
+
+    def _sweep_around(self, track: Track) -> tuple[Apart, Apart]:
+        return self.sweeper.around(track, "scene"), self.sweeper.around(track, "self")
 
     def margins(self, leg: Leg) -> Margins:
         """Limits and conditioning along a leg."""
@@ -251,6 +329,17 @@ class Comparison:
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)
+
+
+def _legs_of(
+    a: Activity, b: Activity
+) -> Iterator[tuple[tuple[Leg, Contents], tuple[Leg, Contents], tuple[Load, Load]]]:
+    """Each leg of one with each of the other, and what both move."""
+    for leg, contents in a.legs:
+        for other, more in b.legs:
+            own = _meanwhile(contents.load(leg.robot), leg.robot, b, more)
+            its = _meanwhile(more.load(other.robot), other.robot, a, contents)
+            yield (leg, contents), (other, more), (own, its)
 
 
 def _meanwhile(load: Load, robot: str, other: Activity, contents: Contents) -> Load:

@@ -22,7 +22,7 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
-from pn2code.net.flat import ArcKind
+from pn2code.net.flat import ArcKind, FlatNet
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot.commands import Command
 from pn2code.semantics.evaluation.effects import Effect, effects_of
@@ -30,15 +30,20 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import Binding
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
-from pn2code.verify.controller.control_types import CellProgram
+from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
+from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Generated, Sizes
 
-MOST_STATES = 300_000
-"""States of a cell that are looked at."""
+MOST_STATES = MOST_WRITTEN
+"""States of a cell that are looked at if nobody wants more ..."""
+MOST_HELD = 3_000_000
+"""... and never more than these: each takes about a kilobyte."""
 CLOCK = -1
 """The owner of steps of the clock."""
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
@@ -75,6 +80,8 @@ class CellGraph:
         marked: of each state the places of the cell's net that hold tokens, and how many.
         over: the states in which the supervisor has come to a final place.
         why: it is not whole, and why; "": it is.
+        cut: of a part of the graph, the states of which not all arcs are there.
+        wider: it is that of a net that does more (`verify.controller.forgetting`): what can be under way need not be.
     """
 
     def __init__(
@@ -86,8 +93,12 @@ class CellGraph:
         arcs: Sequence[Sequence[tuple[int, int]]],
         marked: Sequence[Mapping[int, int]],
         why: str,
+        cut: frozenset[int] = frozenset(),
+        *,
+        wider: bool = False,
     ) -> None:
         self.partition, self.storage, self.running = partition, storage, running
+        self.cut, self.wider = cut, wider
         self.elements, self.arcs, self.marked = elements, arcs, marked
         self.why = why or undetermined(partition.net)
         self.over = frozenset(i for i, m in enumerate(marked) if running.over in m)
@@ -120,6 +131,27 @@ class CellGraph:
             if s.colset is not None and s not in outputs and s.name in element.binding
         }
 
+    def delay(self, element: Element) -> float:
+        """After how many units of model time the last token that it puts into a timed place is available.
+
+        Raises GameError: that cannot be computed.
+        """
+        t = self.partition.net.transitions[element.transition]
+        values = element.binding
+        binding = {
+            s: from_json(s.colset, values[s.name])
+            for s in t.variables
+            if s.colset is not None and s.name in values
+        }
+        self._game.evaluator.now = 0
+        delay, most = self._game.delay(t, binding), 0.0
+        for arc in t.arcs:
+            is_put = arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH)
+            if is_put and self.partition.net.places[arc.place].colset.timed:
+                put = self._game.put(TimedMultiSet(), arc, binding, delay, 0)
+                most = max([most, *(float(x.stamp) for x in put if isinstance(x, Timed))])
+        return most
+
     def _told(self, element: Element) -> tuple[Command, ...]:
         if element.is_step:
             return ()
@@ -136,11 +168,12 @@ class CellGraph:
 
 def explore_cell(
     partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
-    initial: str | None = None, program: CellProgram | None = None,
+    initial: str | None = None, program: CellProgram | None = None, *, part: bool = False,
 ) -> CellGraph | None:  # fmt: skip
     """Explores the cell as it runs; None after an error that was reported.
 
-    `program` is what somebody has compiled of the same cell.
+    `program` is what somebody has compiled of the same cell. `part`: of a cell that was not seen to its end a part is
+    wanted; else nothing is, but why.
 
     Raises:
         NotModelledError: it cannot be said what its programs do.
@@ -148,10 +181,14 @@ def explore_cell(
     if program is None:
         program = CellProgram(Running.of(partition), (), Generated())
     running, made = program.running, program.generated
-    most = min(limits.max_states or MOST_STATES, MOST_STATES)
+    written = program.graph
+    if written is not None and written.nodes <= (limits.max_states or MOST_STATES):
+        graph = _read(partition, storage, running, _rows(written.file), "")
+        if (len(graph.arcs), sum(map(len, graph.arcs))) == (written.nodes, written.arcs):
+            return graph
     limits = replace(
         limits,
-        max_states=most,
+        max_states=min(limits.max_states or MOST_STATES, MOST_HELD),
         graph=True,
         approximation=None,
         traces=0,
@@ -165,6 +202,7 @@ def explore_cell(
             generated=made,
             predicates=program.predicates,
             graph=file,
+            part=part,
             questions="".join(f"{line}\n" for line in running.lines(first=True)),
             evidence=Path(folder),
             quick=True,
@@ -173,12 +211,61 @@ def explore_cell(
         if found is None:
             return None
         why = "" if found.complete else found.why
-        if not file.exists():
+        if not file.exists() or (why and not part):
             return _read(partition, storage, running, (), why or "states")
         graph = _read(partition, storage, running, _rows(file), why)
         seen = len(graph.arcs), sum(map(len, graph.arcs))
         if not why and seen != (found.nodes, found.arcs):
             graph.why = "file"
+        return graph
+
+
+def explore_wider(
+    partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics
+) -> CellGraph | None:
+    """Explores a net that does all that the cell does, and more, but has fewer states; None: there is none.
+
+    Raises:
+        NotModelledError: it cannot be said what the programs of the cell do.
+    """
+    running = Running.of(partition)
+    less = forgetful(partition, storage)
+    if less is None:
+        return None
+    limits = replace(
+        limits,
+        max_states=min(limits.max_states or MOST_STATES, MOST_HELD),
+        graph=True,
+        approximation=None,
+        traces=0,
+        reductions=(),
+    )
+    graph = None
+    # Of places that are forgotten others may depend, so that with all of them there are fewer states.
+    for net in (less.net, less.whole) if less.places else (less.net,):
+        graph = _explored_wider(running, net, storage, limits, d)
+        if graph is None or graph.arcs:
+            break
+    return graph
+
+
+def _explored_wider(
+    running: Running, net: FlatNet, storage: Mapping[str, str], limits: Limits, d: Diagnostics
+) -> CellGraph | None:
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
+        file = Path(folder) / "graph.jsonl"
+        sizes = Sizes.start(net, storage)
+        options = ExploreOptions(sizes=sizes, generated=Generated(), graph=file, quick=True)
+        found = explore(net, storage, limits, d, options)
+        if found is None:
+            return None
+        is_there = found.complete and file.exists()
+        rows = _rows(file) if is_there else ()
+        why = "" if is_there else ("file" if found.complete else found.why)
+        graph = _read(running.partition, storage, running, rows, why)
+        if is_there and (len(graph.arcs), sum(map(len, graph.arcs))) != (found.nodes, found.arcs):
+            graph.why = "file"
+        graph.wider = True
         return graph
 
 
@@ -210,6 +297,8 @@ def _read(
     elements: list[Element] = []
     arcs: list[list[tuple[int, int]]] = []
     marked: list[Mapping[int, int]] = []
+    markings: dict[tuple[tuple[int, int], ...], Mapping[int, int]] = {}
+    cut: set[int] = set()
 
     def grow(size: int) -> None:
         while len(arcs) < size:
@@ -219,11 +308,14 @@ def _read(
     for row in rows:
         if "node" in row:
             grow(row["node"])
-            marked[row["node"] - 1] = {
+            held = {
                 places[name]: sum(entry[0] for entry in tokens)
                 for name, tokens in row["marking"].items()
                 if tokens
             }
+            marked[row["node"] - 1] = markings.setdefault(tuple(held.items()), held)
+            if row.get("cut"):
+                cut.add(row["node"] - 1)
             continue
         index = row["index"]
         key = (index, json.dumps(row["binding"]))
@@ -241,4 +333,4 @@ def _read(
             )
         grow(max(row["from"], row["to"]))
         arcs[row["from"] - 1].append((known[key], row["to"] - 1))
-    return CellGraph(partition, storage, running, elements, arcs, marked, why)
+    return CellGraph(partition, storage, running, elements, arcs, marked, why, frozenset(cut))

@@ -32,13 +32,15 @@ class Stand:
 
     Args:
         number: of this place, among all places of all arms.
-        q: its joint position, rad; T_base_tcp: where its TCP was told to be.
+        q: its joint position, rad; T_base_tcp: where its TCP was told to be, that of its coupling if it changes tools.
+        tool: which of these is in use; "": none.
     """
 
     number: int
     robot: str
     q: Array
     T_base_tcp: Array
+    tool: str = ""
 
 
 @frozen(eq=False)
@@ -47,6 +49,7 @@ class Leg:
 
     Args:
         number: of this leg, among all legs.
+        command: as it is meant there: a move that names no TCP is one of the tool in use.
         path: its joint positions along the way; None with a fault.
         fault: why it cannot be carried out; the arm stays where it is.
     """
@@ -93,7 +96,7 @@ class Planner:
     def home(self, robot: str) -> Stand:
         """Where a run begins."""
         executor = RobotExecutor(self.cell.robot(robot), self.cell.motion)
-        return self._stand(robot, executor.q, executor.T_base_tcp)
+        return self._stand(robot, executor)
 
     def standing(self, stand: Stand) -> Leg:
         """An arm that does nothing."""
@@ -116,30 +119,33 @@ class Planner:
 
     def _planned(self, stand: Stand, command: Command) -> Leg:
         executor = self._executors[stand.robot]
-        executor.stand(stand.q, stand.T_base_tcp)
+        executor.stand(stand.q, stand.T_base_tcp, stand.tool)
+        command = executor.told(command)
         number = len(self.legs)
         try:
             motion = executor.begin(command, 0.0)
         except MotionFault as fault:
             return Leg(number, stand.robot, command, "wait", None, stand, stand, fault)
         executor.finish()
-        end = self._stand(stand.robot, rewound(executor.robot, executor.q), executor.T_base_tcp)
+        end = self._stand(stand.robot, executor)
         return Leg(number, stand.robot, command, motion.kind, motion.trajectory, stand, end)
 
     def seen_from_arm(self, stand: Stand, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
         """Where a move to a pose leads the TCP, seen from where the tracks have carried the base of the arm then."""
         executor = self._executors[stand.robot]
-        executor.stand(stand.q, stand.T_base_tcp)
+        executor.stand(stand.q, stand.T_base_tcp, stand.tool)
         return executor.seen_from_arm(command)
 
-    def _stand(self, robot: str, q: Array, T_base_tcp: Array) -> Stand:  # noqa: N803
+    def _stand(self, robot: str, executor: RobotExecutor) -> Stand:
+        q, T_base_tcp = rewound(executor.robot, executor.q), executor.T_base_tcp  # noqa: N806
         key = (
             robot,
+            executor.tool,
             *np.round(q, self._digits).tolist(),
             *np.round(T_base_tcp, self._digits).ravel().tolist(),
         )
         if key not in self._stands:
-            found = Stand(len(self.stands), robot, np.array(q), np.array(T_base_tcp))
+            found = Stand(len(self.stands), robot, np.array(q), np.array(T_base_tcp), executor.tool)
             self._stands[key] = found
             self.stands.append(found)
         return self._stands[key]

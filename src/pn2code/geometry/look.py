@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Layout, Move, Pair, Verdict
+from pn2code.geometry.answers import Layout, Move, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
@@ -45,6 +45,7 @@ class Options:
         initial: markings that files gave, for the headers of traces.
         explore: explores a changed cell; None: no proposals.
         stage: hears in words what is done.
+        jobs: processes that sweep.
     """
 
     folder: Path
@@ -52,6 +53,7 @@ class Options:
     initial: str | None = None
     explore: Explore | None = None
     stage: Callable[[str], None] = lambda _text: None
+    jobs: int = 1
 
 
 @frozen(eq=False)
@@ -65,6 +67,24 @@ class _Meeting:
     met: Met
 
 
+@frozen
+class Seen:
+    """What was seen of a layout.
+
+    Args:
+        arms: what does not surely keep apart of two arms, by what they do; parts: of arms and parts that stand.
+    """
+
+    moves: tuple[Move, ...]
+    arms: dict[tuple[Side, Side], Pair]
+    parts: tuple[Pair, ...]
+
+    @property
+    def pairs(self) -> tuple[Pair, ...]:
+        """All that does not surely keep apart."""
+        return (*self.arms.values(), *self.parts)
+
+
 class Look:
     """One layout."""
 
@@ -76,7 +96,7 @@ class Look:
         self.doing = Doing(self.planner, cell, shown)
         self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.moving)
-        self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
+        self.runs: dict[tuple[Situations, int, tuple[int, ...]], Run] = {}
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -85,32 +105,52 @@ class Look:
     def answer(self) -> Layout:
         """All that is known."""
         began = time.perf_counter()
-        self.options.stage("looking where arms can be ...")
-        found = Situations(self.graph, self.doing, self.robots)
-        found.explore()
-        self.options.stage("sweeping moves ...")
-        moves = self._moves(found)
-        self.options.stage("sweeping pairs ...")
-        bad = self._pairs(found)
-        pairs = [*bad.values(), *self._parts(found)]
-        touching = [sides for sides, pair in bad.items() if pair.answer == "no"]
+        found = self.situations(self.graph)
+        seen = self.seen(found)
+        touching = [sides for sides, pair in seen.arms.items() if pair.answer == "no"]
         explore = self.options.explore
         zones = None
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
-            zones = Zones(found, self.comparison, explore).proposals(bad, touching)
+            zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
+        return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
+
+    def situations(self, graph: CellGraph) -> Situations:
+        """All of them."""
+        self.options.stage("looking where arms can be ...")
+        found = Situations(graph, self.doing, self.robots)
+        found.explore()
+        return found
+
+    def seen(self, found: Situations) -> Seen:
+        """All moves, and what does not surely keep apart."""
+        self.options.stage("sweeping moves ...")
+        moves = self._moves(found)
+        self.options.stage("sweeping pairs ...")
+        arms = self._pairs(found)
+        return Seen(tuple(moves), arms, tuple(self._parts(found)))
+
+    def layout_of(
+        self,
+        found: Situations,
+        moves: tuple[Move, ...],
+        pairs: tuple[Pair, ...],
+        began: float,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> Layout:
+        """With the sizes of what was looked at."""
         is_apart = not found.stopped and not any(p.answer == "no" for p in pairs)
         return Layout(
             self.layout,
-            len(self.graph.arcs),
+            len(found.graph.arcs),
             len(found.situations),
-            tuple(moves),
-            tuple(pairs),
+            moves,
+            pairs,
             self.comparison.compared,
             self.comparison.sweeper.queries,
             time.perf_counter() - began,
             reason(found.why),
-            tuple(zones or ()),
+            proposals,
             self.comparison.nearest() if is_apart else None,
             found.stopped,
             tuple(r.name for r in self.cell.devices),
@@ -122,13 +162,32 @@ class Look:
         rows: dict[tuple[int, str], Move] = {}
         looked: set[tuple[int, str]] = set()
         handled: dict[tuple[str, str, str], Move] = {}
+        activities = (self.doing.activities[number] for number, _ in found.activities)
+        legs = ((x, c.load(x.robot)) for a in activities for x, c in a.legs)
+        with self.comparison.moves_ahead(filter(self._is_looked_at, legs), self.options.jobs):
+            self._each_move(found, rows, looked, handled)
+        return [*self._at_start(), *rows.values(), *handled.values()]
+
+    @staticmethod
+    def _is_looked_at(moved: tuple[Leg, Load]) -> bool:
+        """An arm at rest with nothing in its tool is no move, but for where it rests at all."""
+        leg, load = moved
+        return leg.fault is not None or leg.is_moving or bool(load) or leg.command is None
+
+    def _each_move(
+        self,
+        found: Situations,
+        rows: dict[tuple[int, str], Move],
+        looked: set[tuple[int, str]],
+        handled: dict[tuple[str, str, str], Move],
+    ) -> None:
         for (number, _element), met in found.activities.items():
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
                 load = contents.load(leg.robot)
                 key = (leg.number, spots(load))
                 is_at_rest = leg.fault is None and not leg.is_moving
-                if key in looked or (is_at_rest and not load and leg.command is not None):
+                if key in looked or not self._is_looked_at((leg, load)):
                     continue
                 looked.add(key)
                 row = self._move(found, leg, load, met)
@@ -143,7 +202,6 @@ class Look:
                 key_ = (row.transition, row.command, row.begins)
                 if key_ not in handled or (handled[key_].answer, row.answer) == ("unknown", "no"):
                     handled[key_] = row
-        return [*self._at_start(), *rows.values(), *handled.values()]
 
     def _at_start(self) -> list[Move]:
         """Parts that cannot be where cell.toml puts them."""
@@ -151,7 +209,8 @@ class Look:
         for part, trouble in self.doing.overlaps_at_start():
             answer: Verdict = "no" if trouble.margin < -ROUNDING else "unknown"
             does = f"stands at {numbers(pose_of(part.frame))}"
-            why = f"`{part.name}`, as `[parts.{part.kind.name}]` places it, {trouble.text}"
+            placed = "at its `rack`" if part.is_tool else f"as `[parts.{part.kind.name}]` places it"
+            why = f"`{part.name}`, {placed}, {trouble.text}"
             out.append(Move(part.name, "", does, "", "part", answer, why))
         return out
 
@@ -161,7 +220,8 @@ class Look:
         begins = ""
         if activity.end is not None:
             base = self.cell.robot(owner).T_world_base
-            begins = numbers(pose_of(base @ activity.end.T_base_tcp))
+            own = self.cell.robot(owner).of_tool(activity.end.tool, activity.end.T_base_tcp)
+            begins = numbers(pose_of(base @ own))
         does = words(activity.command)
         run = self._run(found, met)
         answer: Verdict = "no" if activity.is_part else "unknown"
@@ -171,7 +231,9 @@ class Look:
     def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
-        begins = numbers(pose_of(base @ leg.start.T_base_tcp))
+        robot = self.cell.robot(leg.robot)
+        own = robot.of_tool(leg.start.tool, leg.start.T_base_tcp)
+        begins = numbers(pose_of(base @ own))
         held = [p for p in load if p.holder]
         does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
         if on_it := sum(p.up is not None for p in held):
@@ -225,20 +287,39 @@ class Look:
     def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
         """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
         met_: dict[tuple[Side, Side], _Meeting] = {}
-        for numbers_, met in found.pairs.items():
-            a, b = (self.doing.activities[n] for n in numbers_)
-            sides = found.sides(a, b, met)
-            if sides in met_ and met_[sides].apart.outcome == "touch":
-                continue
-            for leg, other, apart in self.comparison.activities(a, b):
-                if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
-                    first, second = (_who(found, e)[0] for e in met.elements)
-                    does = (words(leg.command), words(other.command))
-                    robots = (leg.robot, other.robot)
-                    met_[sides] = _Meeting(robots, (first, second), does, apart, met)
-                if apart.outcome == "touch":
-                    break
+        activities = self.doing.activities
+        pairs = [(activities[n], activities[m]) for n, m in found.pairs]
+        all_sides = [
+            found.sides(*pair, met) for pair, met in zip(pairs, found.pairs.values(), strict=True)
+        ]
+
+        def is_open(i: int) -> bool:
+            return all_sides[i] not in met_ or met_[all_sides[i]].apart.outcome != "touch"
+
+        with self.comparison.pairs_ahead(pairs, self.options.jobs, is_open):
+            for i, met in enumerate(found.pairs.values()):
+                if is_open(i):
+                    self._pair(pairs[i], all_sides[i], met, met_, found)
         return dict(zip(met_, self._reported(found, met_.values()), strict=True))
+
+    def _pair(
+        self,
+        pair: tuple[Activity, Activity],
+        sides: tuple[Side, Side],
+        met: Met,
+        met_: dict[tuple[Side, Side], _Meeting],
+        found: Situations,
+    ) -> None:
+        """Notes where two activities do not surely keep apart."""
+        a, b = pair
+        for leg, other, apart in self.comparison.activities(a, b):
+            if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
+                first, second = (_who(found, e)[0] for e in met.elements)
+                does = (words(leg.command), words(other.command))
+                robots = (leg.robot, other.robot)
+                met_[sides] = _Meeting(robots, (first, second), does, apart, met)
+            if apart.outcome == "touch":
+                break
 
     def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
@@ -279,8 +360,10 @@ class Look:
     # --- words and runs --------------------------------------------------------------------------
 
     def _run(self, found: Situations, met: Met) -> Run | None:
-        """A run to where something is under way; None: there are enough of them."""
-        key = (met.situation, met.elements)
+        """A run to where something is under way; None: there are enough of them, or perhaps there is none."""
+        if found.graph.wider:
+            return None
+        key = (found, met.situation, met.elements)
         if key not in self.runs and len(self.runs) < MOST_RUNS:
             number = len(self.runs) + 1
             layout = f"-{self.layout}" if self.layout else ""

@@ -18,11 +18,12 @@ from pn2code.geometry.apart import Apart
 from pn2code.robot.backend import Clearance
 
 _OWN = re.compile(r"(?<=\.)(\d+)(\.held_by_\w+|\.standing|\.on_\w+)")
+_OWN_TOOL = re.compile(r"\.tool_(?:held_by_\w+|standing)")
 
 
 def held(part: str, robot: str) -> str:
     """Of a part in a tool."""
-    return f"{part}.held_by_{robot}"
+    return f"{part}{_of(part)}held_by_{robot}"
 
 
 def on_plate(part: str, plate: str, number: int) -> str:
@@ -32,12 +33,17 @@ def on_plate(part: str, plate: str, number: int) -> str:
 
 def standing(part: str) -> str:
     """Of a part that stands."""
-    return f"{part}.standing"
+    return f"{part}{_of(part)}standing"
+
+
+def _of(part: str) -> str:
+    """Tools have no number, of each there is one."""
+    return "." if "." in part else ".tool_"
 
 
 def as_in_runs(text: str) -> str:
     """A name, or words in which there are some."""
-    return _OWN.sub(r"\1", text)
+    return _OWN_TOOL.sub("", _OWN.sub(r"\1", text))
 
 
 def as_seen(apart: Apart) -> Apart:

@@ -23,7 +23,7 @@ def text(layouts: Sequence[Layout], *, full: bool) -> str:
 def _lines(layout: Layout, full: bool) -> Iterator[str]:
     where = f"Layout `{layout.name}`: " if layout.name else ""
     yield (
-        f"{where}{layout.states:,} states of the cell, {layout.situations:,} with the places of the arms; "
+        f"{where}{layout.states:,} states of {_whose(layout)}, {layout.situations:,} with the places of the arms; "
         f"{_many(len(layout.moves), 'move')}, {_many(layout.looked, 'pair')} of moves; {layout.seconds:.1f} s"
     )
     if layout.open:
@@ -40,6 +40,10 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
     for proposal in layout.proposals:
         yield from _proposed(proposal)
     yield ""
+
+
+def _whose(layout: Layout) -> str:
+    return "a net that does more than the cell" if layout.is_wider else "the cell"
 
 
 def _verdicts(layout: Layout) -> Iterator[str]:

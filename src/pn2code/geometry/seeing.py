@@ -143,7 +143,7 @@ class Seeing:
         place = self._place(sensor)
         parts = parts_of(contents, scene.stands, 0.0)
         for part in some:
-            if not part.holder and sensor.part in ("", part.kind.name):
+            if not part.holder and not part.is_tool and sensor.part in ("", part.kind.name):
                 apart = float(np.linalg.norm(parts.world(part)[:3, 3] - place))
                 yield apart - part.kind.tolerance
 

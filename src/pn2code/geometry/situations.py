@@ -22,7 +22,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.contents import Contents, spot
-from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.graph import MOST_STATES, CellGraph
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.seeing import Scene, Seeing
 from pn2code.robot.parts import Part
@@ -32,7 +32,9 @@ Side = tuple[int, int, int]
 Said = frozenset[tuple[int, str, bool]]
 """Whom, by the number of the owner, which sensor has told what."""
 MOST = 1_000_000
-"""Situations that are looked at."""
+"""Situations that are looked at ..."""
+MORE = 4
+"""... or, where more states than usual were asked for, so many times these."""
 
 
 @frozen(eq=False)
@@ -90,7 +92,7 @@ class Situations:
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
         cell = doing.start.parts.cell
-        tables = {r.name: r.carrying for r in cell.moving} if cell.parts else {}
+        tables = {r.name: r.carrying for r in cell.moving} if cell.kinds else {}
         self._with_tables = frozenset(name for name, own in tables.items() if own)
         self._owner_names = {o.index: o.name for o in graph.partition.owners}
         self._acting = {
@@ -103,16 +105,19 @@ class Situations:
         stands = tuple(self.doing.planner.home(r) for r in self.robots)
         self._number(self._begun(Situation(0, stands, self.doing.start)), -1, -1)
         todo = deque([0])
+        is_large = len(self.graph.arcs) > MOST_STATES
+        most = MORE * len(self.graph.arcs) if is_large else MOST
         while todo:
             number = todo.popleft()
             here = self.situations[number]
             under_way = self._under_way(here)
-            self._note(number, here, under_way)
+            if here.state not in self.graph.cut:  # else more may be under way
+                self._note(number, here, under_way)
             for element, target in self.graph.arcs[here.state]:
                 after = self._after(here, element, target, under_way)
                 if after is None:
                     continue
-                if len(self.situations) >= MOST and after.key not in self._numbers:
+                if len(self.situations) >= most and after.key not in self._numbers:
                     self.why = self.why or "situations"
                     continue
                 before = len(self.situations)
@@ -273,7 +278,7 @@ class Situations:
     ) -> None:
         """What is under way stays so, whatever others do; else more could be under way than is seen."""
         e = self.graph.elements[element]
-        if e.is_end or not under_way:
+        if e.is_end or not under_way or target in self.graph.cut:
             return
         there: set[int] | None = None
         for other in under_way:
@@ -309,7 +314,9 @@ class Situations:
             if owner is not None:
                 by_arm[owner].append((element, activity))
         for arm, stand in enumerate(here.stands):
-            if not by_arm[arm]:
+            if (
+                not by_arm[arm] or self.graph.wider
+            ):  # of a net that does more it may be idle as well
                 activity = self.doing.standing(stand, here.contents)
                 by_arm[arm].append((-1, activity))
                 self.activities.setdefault((activity.number, -1), Met(number, (-1,)))
@@ -332,7 +339,7 @@ class Situations:
         by_arm: list[list[tuple[int, Activity]]],
     ) -> None:
         """Parts that stand while arms move: those that are there, and those that others put there meanwhile."""
-        if not self.doing.start.parts.cell.parts:
+        if not self.doing.start.parts.cell.kinds:
             return
         own = here.contents.standing
         for acts in by_arm:

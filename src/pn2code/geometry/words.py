@@ -8,6 +8,7 @@ from pn2code.geometry.graph import MOST_STATES
 from pn2code.robot.commands import (
     Along,
     Command,
+    Handling,
     Measure,
     MoveAxes,
     MoveCircular,
@@ -22,8 +23,8 @@ from pn2code.robot.commands import (
 from pn2code.verify.answers.reasons import clause
 
 _OPEN = {
-    "states": f"the cell has more states than were looked at, {MOST_STATES:,} at most: fewer parts or rounds make it "
-    "smaller (a `val` of the net with `--set`), and so do colour sets with fewer values",
+    "states": f"the cell has more states than were looked at, {MOST_STATES:,} unless `--max-states` says more: fewer "
+    "parts or rounds make it smaller (a `val` of the net with `--set`), and so do colour sets with fewer values",
     "seconds": "the time was over before all states of the cell were seen",
     "memory": "the memory was full before all states of the cell were seen",
     "interrupted": "it was interrupted before all states of the cell were seen",
@@ -31,9 +32,11 @@ _OPEN = {
     "situations": "arms and parts can be in more ways together than were looked at",
     "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
     "then is not followed",
-    "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
+    "order": "what becomes of a part or tool depends on how far two programs are that handle it at the same time",
     "turning": "what becomes of a part depends on how far a turntable, a belt or another axis is that another program "
     "moves",
+    "sees": "the cell has more states than were looked at, and a sensor sees its scene, so that each state counts: "
+    "more are looked at with `--max-states`",
     "file": "the graph of the cell could not be written into a temporary file; is the disk full?",
     "outside": "what a robot is told depends on more than tokens: random numbers, files, the time, or the number of "
     "steps",
@@ -68,6 +71,8 @@ def words(command: Command | None) -> str:
             return "home"
         case Measure():
             return "measure"
+        case ToolAction(action=action, handling=Handling(is_of_tool=True) as change):
+            return f"tool {action} {change}"
         case ToolAction(action=action):
             return f"tool {action}"
         case Wait(duration=seconds):

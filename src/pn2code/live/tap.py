@@ -149,7 +149,7 @@ class Tap:
         """Where marks and parts are that have come since the last look: the arms still stand there."""
         record = engine.record
         for i in range(self._seen["actions"], len(record.actions)):
-            self._frames["actions", i] = self._mark(record.actions[i])
+            self._frames["actions", i] = self._mark(record.actions[i], record.parts)
         for i in range(self._seen["parts"], len(record.parts)):
             self._frames["parts", i] = self._part(record.parts[i])
         self._seen = {"actions": len(record.actions), "parts": len(record.parts)}
@@ -164,12 +164,14 @@ class Tap:
             return None
         return arm.T_world_base @ arm.kinematics.forward(q)
 
-    def _mark(self, action: ActionRecord) -> Json | None:
+    def _mark(self, action: ActionRecord, parts: Sequence[PartRecord]) -> Json | None:
         if action.kind != "tool" or action.label not in self._labels:
             return None
         tcp = self._tcp(action.robot)
         if tcp is None:
             return None
+        arm = self._arms[action.robot]
+        tcp = arm.of_tool(cells.tool_in_use(arm, parts, action.end), tcp)
         return {
             "t": action.end,
             "robot": action.robot,
@@ -179,7 +181,7 @@ class Tap:
 
     def _part(self, entry: PartRecord) -> Json:
         change = entry.change
-        state: Json = {"t": entry.t, **cells.put(self._cell, change)}
+        state: Json = {"t": entry.t, **cells.put(self._cell, change, entry.robot)}
         tcp = self._tcp(entry.robot)
         if change.effect == "takes" and tcp is not None:
             state["frame"] = cells.frame(inverse(tcp) @ matrix_of(change.pose))

@@ -261,7 +261,8 @@ TYPE_TOO_LARGE = register(
     "ml-type-too-large",
     "a type is too large",
     "The type of an expression has more than a hundred thousand parts, which happens where functions that double "
-    "their argument are composed many times. Give the argument a type, or split the declaration.",
+    "their argument are composed many times. Give the argument a type, or split the declaration. A colour set has "
+    "such a type when it is a product of products of products.",
 )
 SIGNATURE = register(
     "signature-mismatch",

@@ -18,7 +18,13 @@ from collections.abc import Sequence
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
-from pn2code.net.codes import CODE_OUTPUT_BOUND, LOCAL_NAME, SUMMANDS_SHARE, UNBOUND_VARIABLE
+from pn2code.net.codes import (
+    BINDING_CIRCLE,
+    CODE_OUTPUT_BOUND,
+    LOCAL_NAME,
+    SUMMANDS_SHARE,
+    UNBOUND_VARIABLE,
+)
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
     ArcInscription,
@@ -30,7 +36,7 @@ from pn2code.net.flat import (
     BindTerm,
     CodeSegment,
 )
-from pn2code.net.sequence import stuck
+from pn2code.net.sequence import Names, stuck
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
 
@@ -152,19 +158,24 @@ class Planner:
         return not clashes
 
     def check_sequence(self, parts: Parts, free: Uses) -> bool:
-        """Refuse what the engine finds no order for: summands of one arc that share variables."""
-        arcs: dict[int, list[frozenset[Symbol]]] = {}
+        """Refuse what the engine finds no order for: it tries all values only where nothing could bind a variable."""
+        arcs: dict[int, list[Names]] = {}
         for b in self.binders(parts):
             arcs.setdefault(b.arc, []).append(frozenset(b.variables))
-        if all(len(summands) < 2 for summands in arcs.values()):
-            return True
         equations = [(frozenset(q.variables), q.needs) for q in self.equations(parts)]
-        known = frozenset(free).difference(*(s for summands in arcs.values() for s in summands))
-        missing = stuck(list(arcs.values()), equations, known)
+        counted = self.counted(parts)
+        if not counted and not equations and all(len(summands) < 2 for summands in arcs.values()):
+            return True
+        wanted = counted.union(
+            *(s for summands in arcs.values() for s in summands), *(s for s, _ in equations)
+        )
+        missing = stuck(list(arcs.values()), equations, frozenset(free) - wanted, wanted)
+        if not missing:
+            return True
+        names = ", ".join(f"`{s.name}`" for s in sorted(missing, key=lambda s: s.name))
         for n, summands in arcs.items():
             inscription = parts.arcs[n][1]
-            if inscription is not None and any(s & missing for s in summands):
-                names = ", ".join(f"`{s.name}`" for s in sorted(missing, key=lambda s: s.name))
+            if inscription is not None and len(summands) > 1 and any(s & missing for s in summands):
                 self.d.error(
                     SUMMANDS_SHARE,
                     f"the summands of an arc of transition `{parts.name}` share variables, so that CPN Tools cannot "
@@ -175,7 +186,30 @@ class Planner:
                     "shared variable its value elsewhere, on another arc or by a guard",
                 )
                 return False
-        return True
+        first = min(missing, key=lambda s: s.name)
+        self.d.error(
+            BINDING_CIRCLE,
+            f"CPN Tools cannot bind {names} of transition `{parts.name}`: it finds no complete binding sequence, "
+            "because what could give a value needs this value, or another one of these, before",
+            free[first],
+            notes=[Note(HERE, parts.origin)],
+            hint=f"put `{first.name}` on an input arc as a pattern of its own, or write a guard `{first.name} = ...` "
+            "whose other side has a value",
+        )
+        return False
+
+    def counted(self, parts: Parts) -> Names:
+        """Variables of patterns whose own coefficient has them: (size x)`x can only test."""
+        terms = [
+            t for _, inscription in parts.arcs for t in (inscription.terms if inscription else ())
+        ]
+        return frozenset(
+            s
+            for t in terms
+            if (own := self.variables.seen(t.coefficient))
+            for s in pattern_variables(self.terms.pattern(t.value))
+            if s in own
+        )
 
     def steps(self, parts: Parts, needed: Uses, free: Uses) -> tuple[BindStep, ...] | None:
         """The steps that bind `free`; those of `needed` must have values before the transition is enabled."""
@@ -239,8 +273,7 @@ class Planner:
                 names = pattern_variables(pattern)
                 if pattern is not None and names:
                     needs = frozenset(self.variables.seen(value))
-                    if not needs & set(names):
-                        found.append(_Equation(i, pattern, names, value, needs))
+                    found.append(_Equation(i, pattern, names, value, needs))
         return found
 
     def choose(

@@ -114,6 +114,12 @@ MONITOR_NODE = register(
     "a monitor watches something that does not exist",
     "A monitor names the places and transitions that it watches by id. One that does not exist (any more) is skipped.",
 )
+PORT_IDLE = register(
+    "port-idle",
+    "a port has no arc on its page",
+    "No transition of the page puts tokens into the port place or takes any from it. CPN Tools accepts that without a "
+    "word; mostly an arc was forgotten, or leads to another place of a similar name.",
+)
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
     "a kind of declaration is not supported",
@@ -213,6 +219,14 @@ SUMMANDS_SHARE = register(
     "value it uses only one to bind; the others are only tested. For 1`(a, b) ++ 1`(a, c) it reports `No complete "
     "binding sequence found`. If the shared variable gets its value from another arc or a guard, the arc is accepted, "
     "and so is 1`(a, b) ++ 1`(b, a), whose second summand has no variable of its own.",
+)
+BINDING_CIRCLE = register(
+    "binding-circle",
+    "variables need each other's values",
+    "CPN Tools tries all values of a variable only where nothing could give it one. In the guard [c = d] each side "
+    "could give the other its value, so that neither is tried, and it reports `No complete binding sequence found` "
+    "unless one of them has a value from an input arc or another guard. The same happens for [c = next c], and for a "
+    "variable that is in a pattern and in its own coefficient: (size c)`c.",
 )
 ARCS_SHARE = register(
     "arcs-share-variables",

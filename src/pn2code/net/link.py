@@ -17,6 +17,7 @@ from pn2code.net.codes import (
     PAGE_RECURSION,
     PORT_ASSIGNMENT,
     PORT_DIRECTION,
+    PORT_IDLE,
     SUBPAGE_UNKNOWN,
     SUBSTITUTION_INSCRIPTION,
     UNSUPPORTED_CHANNEL,
@@ -95,6 +96,7 @@ class _Linker:
         self.check_recursion(pages)
         for page in pages:
             self.check_directions(page)
+        self.check_idle_ports()
         editor.warn(self.document, pages, self.d)
         self.check_monitors()
         used = {s.subpage for p in pages for s in p.substitutions}
@@ -278,6 +280,21 @@ class _Linker:
                 found[0][1].origin,
                 hint="make it an I/O port, or turn the arc around",
             )
+
+    def check_idle_ports(self) -> None:
+        """Warn of ports that nothing on their page uses: the page does nothing with what its instances are given."""
+        if self.document.tool == "PNML":
+            return
+        for page in self.document.pages:
+            used = {arc.place for arc in (*page.arcs, *page.undirected)}
+            for place in page.places:
+                if place.port and not place.fusion and place.id not in used:
+                    self.d.warning(
+                        PORT_IDLE,
+                        f"port `{place.name}` has no arc on its page: page `{page.name}` does nothing with its sockets",
+                        place.origin,
+                        hint="draw the arcs that are missing, or remove the port and its assignments",
+                    )
 
     def check_monitors(self) -> None:
         """Warn of monitors of nothing."""

@@ -4,6 +4,10 @@ Its engine uses an arc once: at one moment it binds the variables of some summan
 share a variable that has no value yet; all the other summands only test from then on. (Found by experiment.) So
 1`(a, b) ++ 1`(a, c) is refused with "No complete binding sequence found for this transition", unless `a` or `b` or `c`
 has a value from elsewhere; 1`(a, b) ++ 1`(b, a) ++ 1`(a, 1) is not: its second and third summands test.
+
+It tries all values of a variable of a small colour set only where no pattern could bind it. So the guard [c = d] is
+refused when neither has a value, and so are [c = f c] and the arc inscription (size c)`c; [c = f d] is not, if no
+other pattern has `d`.
 """
 
 from __future__ import annotations
@@ -19,16 +23,18 @@ MOST = 1_000
 
 
 def stuck(
-    arcs: Sequence[Sequence[Names]], equations: Collection[tuple[Names, Names]], known: Names
+    arcs: Sequence[Sequence[Names]],
+    equations: Collection[tuple[Names, Names]],
+    known: Names,
+    wanted: Names,
 ) -> Names:
-    """Variables of summands that have no value in the order that gets furthest; none if all can be bound.
+    """Those of `wanted` that have no value in the order that gets furthest; none if all can be bound.
 
     Args:
         arcs: of each arc its summands that are patterns, each by its variables.
         equations: variables that get a value, once those that it needs have one.
         known: what has a value before.
     """
-    wanted = frozenset[Symbol]().union(*(s for arc in arcs for s in arc))
     best, tried = wanted, 0
     todo = [(known, tuple(tuple(arc) for arc in arcs))]
     while todo:

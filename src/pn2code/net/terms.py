@@ -76,13 +76,7 @@ class TermReader:
             token = binary(part, ("Time.token@+", "Time.token@++"))
             pair = token or binary(part, ("Time.@+", "Time.@++"))
             if pair is None:
-                self.d.error(
-                    UNSUPPORTED_TIMED_INPUT,
-                    "this form of timed multi-set is not supported on an input arc",
-                    part.span,
-                    label="neither `multi-set @+ delay` nor a sum of these",
-                    hint="write the summands with `@+`, or leave the delay out",
-                )
+                self.refuse_timed(part)
                 return None
             value, delay = pair
             if token is None:
@@ -90,6 +84,24 @@ class TermReader:
             else:
                 found.append(self.term(_one(value), value, delay, False, part))
         return tuple(found)
+
+    def refuse_timed(self, part: Exp) -> None:
+        """Say why an input arc cannot take this: it has stamps, or is computed."""
+        message = "this form of timed multi-set is not supported on an input arc"
+        label = "neither `multi-set @+ delay` nor a sum of these"
+        hint = "write the summands with `@+`, or leave the delay out"
+        counted = binary(part, ("Ms.`",))
+        if binary(counted[1] if counted else part, ("Time.@",)) is not None:
+            message, label = (
+                "an input arc takes tokens whatever their time stamps are",
+                "has time stamps",
+            )
+            hint = "leave the `@` and the stamp out: tokens are taken when they are available, or `@+ d` earlier"
+        elif isinstance(part, Var):
+            message = "an input arc takes tokens whatever their time stamps are, and this constant has some"
+            label = "is a timed multi-set"
+            hint = f"declare `{part.span.text}` without them: an untimed multi-set of what is to be taken"
+        self.d.error(UNSUPPORTED_TIMED_INPUT, message, part.span, label=label, hint=hint)
 
     def summands(self, e: Exp, delay: Exp | None) -> tuple[Term, ...]:
         """Terms of an untimed multi-set with the delay that they share."""

@@ -343,7 +343,8 @@ class Declarations:
     ) -> None:
         self.items.append(
             RawColset(
-                id=origin.element_id,
+                # Ids were told apart before; a sort without one may be inside a place or another sort.
+                id="",
                 name=name,
                 kind=kind,
                 ids=ids,

@@ -66,6 +66,13 @@ CPN_UNKNOWN_ELEMENT = register(
     "an element of the .cpn file is not known",
     "pn2code does not know this XML element and ignores it. Each kind of unknown element is reported once.",
 )
+CPN_STRAY_TEXT = register(
+    "cpn-stray-text",
+    "a text of the .cpn file is not where texts are read",
+    "The texts of a place, a transition or an inscription are in a `text` element of their own, as in "
+    "<initmark><text>1`3</text></initmark>. Text written directly into the element is not read: the place "
+    "has no initial marking then. Each kind of element is reported once.",
+)
 CPN_FORMAT = register(
     "cpn-format",
     "the format number of the .cpn file is not known",

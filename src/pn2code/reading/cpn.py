@@ -33,6 +33,26 @@ _CPNET = {
     "globbox", "page", "fusion", "instances", "options", "binders", "monitorblock", "IndexNode", "group", "simout",
 }  # fmt: skip
 
+_MEANT = {
+    "trans": {"condition": "cond", "guard": "cond", "delay": "time", "action": "code", "name": "text"},
+    "place": {
+        "name": "text", "fusion": "fusioninfo", "color": "type", "colset": "type", "marking": "initmark",
+        "initialmarking": "initmark", "initmarking": "initmark", "initial": "initmark",
+    },
+    "arc": {"inscription": "annot", "expression": "annot", "source": "placeend", "target": "transend"},
+    "block": {"colset": "color", "function": "ml", "fun": "ml", "val": "ml"},
+    "globbox": {"colset": "color", "function": "ml", "fun": "ml", "val": "ml"},
+}  # fmt: skip
+"""What other programs write into these elements, and where CPN Tools reads it from."""
+
+
+def _meant(parent: str, child: str) -> str:
+    """What to do about an unknown element."""
+    meant = _MEANT.get(parent, {}).get(child.lower())
+    if meant is not None:
+        return f"write it as an element `{meant}`, as CPN Tools does: the net is as if it were not there"
+    return "is it misspelled? The net is as if it were not there"
+
 
 def read(
     path: Path, d: Diagnostics, *, partial: bool = False, drawn: bool = True
@@ -99,7 +119,7 @@ class _Reader:
             CPN_UNKNOWN_ELEMENT,
             f"element `{child.tag}` inside `{parent.tag}` is not known and is ignored",
             child.at(self.base),
-            hint="is it misspelled? If a program wrote it on purpose, the net means the same without it",
+            hint=_meant(parent.tag, child.tag),
         )
 
     def document(self, root: Node, sha256: str) -> Document | None:

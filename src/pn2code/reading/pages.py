@@ -10,6 +10,7 @@ from pn2code.reading.codes import (
     ARC_DANGLING,
     ARC_ORIENTATION,
     CPN_ELEMENT,
+    CPN_STRAY_TEXT,
     DUPLICATE_ID,
     UNSUPPORTED_CONSTRAINT,
 )
@@ -67,6 +68,7 @@ class PageReader:
         self.ids = ids
         self.seen: dict[str, Origin] = {}
         self.arcs_seen: dict[str, Origin] = {}
+        self.stray: set[str] = set()
 
     def page(self, node: Node) -> RawPage:
         """A `page` with everything on it."""
@@ -154,6 +156,20 @@ class PageReader:
         notes = [Note(f"`{identity}` is first used here", first)]
         report(DUPLICATE_ID, text, origin, notes=notes, hint=hint)
 
+    def check_text(self, node: Node, base: Origin) -> None:
+        """Warn of text directly in an element that has its texts in a `text`, once for each kind of element."""
+        text = node.text.strip()
+        if not text or node.tag in self.stray:
+            return
+        self.stray.add(node.tag)
+        self.d.warning(
+            CPN_STRAY_TEXT,
+            f"the text `{readable(text)[:40]}` stands directly in an element `{node.tag}` and is not read",
+            node.at(base),
+            hint="write it inside an element `text`: "
+            f"<{node.tag}><text>{readable(text)[:40]}</text></{node.tag}>",
+        )
+
     def check_children(self, node: Node) -> None:
         """Warn of unknown elements."""
         known = _KNOWN[node.tag]
@@ -208,6 +224,7 @@ class PageReader:
         origin = Origin(self.file, node.line, node.column, page, what, node.get("id"), "")
         self.claim(node, origin, what)
         self.check_children(node)
+        self.check_text(node, origin)
         return origin
 
     def substitution(self, node: Node, base: Origin) -> RawSubstitution:
@@ -302,8 +319,11 @@ class PageReader:
 
     def inscription(self, node: Node | None, base: Origin, part: str) -> Inscription | None:
         """The text of an inscription; None when it has none, or only white space."""
-        text = node.child("text") if node else None
-        if node is None or text is None or not text.text.strip():
+        if node is None:
+            return None
+        self.check_text(node, base)
+        text = node.child("text")
+        if text is None or not text.text.strip():
             return None
         origin = Origin(
             base.file, text.line, text.column, base.page, base.element, base.element_id, part

@@ -8,19 +8,23 @@ the joints. Nothing here depends on what happens in a run.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pn2code.replay.meshes import Meshes
+from pn2code.robot.commands import CHANGES
 from pn2code.robot.geometry import bodies, body_of
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import PartChange, Parts
+from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
+from pn2code.run.record import PartRecord
 
 Json = dict[str, Any]
 
@@ -35,7 +39,10 @@ def describe(cell: RobotCell) -> Json:
         "robots": [_robot(r, store) for r in cell.moving],
         "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
         "kinds": {
-            name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()
+            kind.name: _looks(body_of(kind.shape).looks, store)
+            if isinstance(kind, PartKind)
+            else _seen_of(kind.tool.urdf, store)
+            for kind in cell.kinds
         },
         "zones": [_zone(z) for z in cell.zones.values()],
         "warningClearance": cell.scene.warning_clearance,
@@ -65,18 +72,31 @@ def standing(cell: RobotCell, pose: Array, plate: str, on_plate: Array | None) -
 
 
 def at_start(cell: RobotCell) -> dict[str, Json]:
-    """Where the parts of the start are, by their names."""
+    """Where the parts and tools of the start are, by their names."""
     parts = Parts(cell)
     return {
-        p.name: {"t": 0.0, **standing(cell, parts.world(p), p.plate, p.frame)}
+        p.name: {"t": 0.0, "frame": frame(p.frame), "holder": p.holder}
+        if p.holder
+        else {"t": 0.0, **standing(cell, parts.world(p), p.plate, p.frame)}
         for p in parts.present.values()
     }
 
 
-def put(cell: RobotCell, change: PartChange) -> Json:
-    """Where a part stands from a change on."""
+def put(cell: RobotCell, change: PartChange, robot: str = "") -> Json:
+    """Where a part stands from a change on; `robot`: who does it, and holds a tool that it couples."""
+    if change.effect == "couples":
+        return {"frame": frame(np.eye(4)), "holder": robot}
     on = None if change.on_plate is None else matrix_of(change.on_plate)
     return standing(cell, matrix_of(change.pose), change.plate, on)
+
+
+def tool_in_use(robot: CellRobot, entries: Iterable[PartRecord], t: float) -> str:
+    """Which of the tools that it changes a robot has in use at a time of a run; "": none."""
+    tool = robot.begins_with
+    for entry in entries:
+        if entry.robot == robot.name and entry.t <= t and entry.change.effect in CHANGES:
+            tool = entry.change.part if entry.change.effect == "couples" else ""
+    return tool
 
 
 def _robot(robot: CellRobot, store: Meshes) -> Json:
@@ -160,6 +180,18 @@ def _visuals(tree: Urdf, link: str, store: Meshes) -> list[list[Any]]:
             own = _colour(material.find("color")) if material is not None else None
             named = colours.get(material.get("name")) if material is not None else None
             out.append([mesh, _origin(visual.find("origin")), list(own or named or _GREY), scale])
+    return out
+
+
+def _seen_of(tree: Urdf, store: Meshes) -> list[list[Any]]:
+    """The same of all links of a tree, in the frame of its root."""
+    out = []
+    for link in tree.links:
+        placed = np.eye(4)
+        for joint in tree.chain(link):
+            placed = placed @ joint.T_parent_joint
+        for mesh, own, colour, scale in _visuals(tree, link, store):
+            out.append([mesh, frame(placed @ np.array(own).reshape(4, 4)), colour, scale])
     return out
 
 

@@ -74,7 +74,7 @@ def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Jso
     states = {name: [state] for name, state in cell.at_start(robot_cell).items()}
     for entry in record.parts:
         change = entry.change
-        state: Json = {"t": entry.t, **cell.put(robot_cell, change)}
+        state: Json = {"t": entry.t, **cell.put(robot_cell, change, entry.robot)}
         if change.effect == "takes" and entry.robot in arms:
             arm = robot_cell.robot(entry.robot)
             tcp = arm.T_world_base @ arm.kinematics.forward(motion.at(entry.robot, entry.t))
@@ -112,7 +112,9 @@ def _marks(
     for action in record.actions:
         if action.kind == "tool" and action.label in labels and action.robot in arms:
             arm = arms[action.robot]
-            tcp = arm.T_world_base @ arm.kinematics.forward(motion.at(action.robot, action.end))
+            tool = cell.tool_in_use(arm, record.parts, action.end)
+            own = arm.kinematics.forward(motion.at(action.robot, action.end))
+            tcp = arm.T_world_base @ arm.of_tool(tool, own)
             rows.append(
                 {
                     "t": action.end,

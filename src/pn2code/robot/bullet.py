@@ -38,6 +38,7 @@ from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, RobotCell
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, pose_of, translation
 
 _SKY = (148.0, 166.0, 186.0)
@@ -316,9 +317,8 @@ class BulletBackend:
         """Shows a part where it is from now on."""
         placed = self._parts.get(part.name)
         if placed is None:
-            shape = replace(part.kind.shape, name=part.name)
             with _silent():
-                placed = _Placed(part, self._load_body(body_of(shape), self._looks).id)
+                placed = _Placed(part, self._load_kind(part.kind, part.name, self._looks))
             self._parts[part.name] = placed
         placed.part, placed.hidden = part, False
         self._known = {}
@@ -508,11 +508,18 @@ class BulletBackend:
             body = self._load_urdf(f"box_{robot}_{link}", "\n".join(lines))
         return self._around(body)
 
-    def part_box(self, kind: PartKind) -> tuple[Array, Array]:
-        """The same around a part of a kind, in its frame."""
+    def part_box(self, kind: PartKind | ToolKind) -> tuple[Array, Array]:
+        """The same around a part of a kind, or a tool, in its frame."""
         with _silent():
-            body = self._load_body(body_of(replace(kind.shape, name=f"box_{kind.name}")), False).id
+            body = self._load_kind(kind, f"box_{kind.name}", False)
         return self._around(body)
+
+    def _load_kind(self, kind: PartKind | ToolKind, name: str, looks: bool) -> int:
+        """A part or tool, as one body without joints."""
+        if isinstance(kind, PartKind):
+            return self._load_body(body_of(replace(kind.shape, name=name)), looks).id
+        text = urdf.as_one_link(kind.tool.urdf)
+        return self._load_urdf(name, text if looks else _without_looks(text))
 
     def _around(self, body: int) -> tuple[Array, Array]:
         low, high = self._p.getAABB(body, -1, physicsClientId=self._client)

@@ -20,6 +20,7 @@ from pn2code.robot.external import Clamp
 from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, difference, matrix_of
 
 SAME = 1e-6
@@ -46,21 +47,21 @@ class Held:
         """Whether the part can be taken away."""
         return self.gap(q) < self.clamp.axis.upper - SAME
 
-    def is_at(self, cell: RobotCell, kind: PartKind, T_world_part: Array) -> bool:
+    def is_at(self, cell: RobotCell, kind: PartKind | ToolKind, T_world_part: Array) -> bool:
         """Whether a part is where the clamp holds one."""
         spot = matrix_of(cell.places[self.clamp.place])
         return difference(T_world_part, spot)[0] <= kind.tolerance
 
-    def words(self, who: str, part: str, q: Array) -> str:
+    def words(self, who: str, part: str, q: Array, does: str = "pulls") -> str:
         """That it cannot, for people."""
         gap, most = 1000.0 * self.gap(q), 1000.0 * self.clamp.axis.upper
         return (
-            f"`{who}` pulls `{part}` out of `{self.name}`, which holds it: its gap is {gap:.1f} mm, and it lets go at "
+            f"`{who}` {does} `{part}` out of `{self.name}`, which holds it: its gap is {gap:.1f} mm, and it lets go at "
             f"{most:.1f} mm"
         )
 
 
-def holding(cell: RobotCell, kind: PartKind, T_world_part: Array) -> Iterator[Held]:
+def holding(cell: RobotCell, kind: PartKind | ToolKind, T_world_part: Array) -> Iterator[Held]:
     """The clamps in which a part is, whether they are open or not."""
     for device in cell.devices:
         for clamp in device.axes.clamps:
@@ -75,10 +76,11 @@ def taken_along(
 ) -> Iterator[tuple[Part, Array]]:
     """What a robot or device that begins to move at `q` takes along, and where that is, `T_world_part`.
 
-    That is what its tool holds, and what stands on those of its turntables or belts (`plates`) that move.
+    That is what its tool holds, but not the tool itself, and what stands on those of its turntables or belts (`plates`)
+    that move.
     """
     for part in parts:
-        if part.holder == robot.name or part.plate in plates:
+        if (part.holder == robot.name and not part.is_tool) or part.plate in plates:
             yield part, carried_to(robot, q, part)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from pn2code.robot.branches import BRANCHES, Branch
 from pn2code.robot.chain import Chain
+from pn2code.robot.three_axes import ThreeAxes
 from pn2code.robot.transforms import Array
 
 
@@ -22,6 +23,8 @@ class ClosedForm:
     known: tuple[Branch, ...] = BRANCHES
     arm_angle: float | None = None
     """rad, of arms with a redundant axis: what is meant where nothing is said; None: the arm has none."""
+    wrist_axes: tuple[int, ThreeAxes] | None = None
+    """The three axes of a spherical wrist, and the index of the first; None: the arm has no such wrist."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain

@@ -10,8 +10,17 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 
-Effect = Literal["takes", "releases", "creates", "removes"]
-EFFECTS: tuple[Effect, ...] = ("takes", "releases", "creates", "removes")
+Effect = Literal["takes", "releases", "creates", "removes", "couples", "uncouples"]
+EFFECTS: tuple[Effect, ...] = (
+    "takes",
+    "releases",
+    "creates",
+    "removes",
+    "couples",
+    "uncouples",
+)
+CHANGES: tuple[Effect, ...] = ("couples", "uncouples")
+"""Those of tools, which are in a rack or in use."""
 
 
 @frozen
@@ -44,7 +53,8 @@ class MoveJoint:
         frame: in which the pose is given: "world", or a name of `[frames]`.
         acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
         along: external axes that move together with the arm, as of all moves but HOME; others stand still.
-        tcp: which comes to the pose, a name of `[robots.NAME.tcps]`, as of all moves to poses; "": that of the tool.
+        tcp: which comes to the pose, a name of `[robots.NAME.tcps]` or a tool that must be in use, as of all moves to
+            poses; "": that of the tool in use.
         arm_angle: rad, where the elbow of an arm with seven axes is at the end, as of all moves to poses; None: where
             the robot has it.
     """
@@ -124,17 +134,23 @@ class MoveCircular:
 
 @frozen
 class Handling:
-    """What an action does to a part, at its end.
+    """What an action does to a part, or to a tool that can be changed, at its end.
 
     Args:
-        effect: the tool takes it, or lets it go; or a part comes into the cell, or leaves it.
-        part: the kind of part.
+        effect: the tool takes it, or lets it go; or a part comes into the cell, or leaves it; or the coupling of the
+            robot takes a tool, or lets it go.
+        part: the kind of part, or the tool.
         place: where it comes or leaves, a name of `[places]`; "" for what a tool does: at its TCP.
     """
 
     effect: Effect
     part: str
     place: str = ""
+
+    @property
+    def is_of_tool(self) -> bool:
+        """Whether it is a tool that is coupled or left, no part."""
+        return self.effect in CHANGES
 
     def __str__(self) -> str:
         """As in a script."""

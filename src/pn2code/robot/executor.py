@@ -54,6 +54,7 @@ from pn2code.robot.motion import (
     swivel_of,
 )
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
+from pn2code.robot.tool_use import expect_tool, tool_after
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
@@ -125,7 +126,7 @@ def turned_by(
 
 
 class RobotExecutor:
-    """One robot's state between commands: its joint position; begins at HOME.
+    """One robot's state between commands: its joint position, and its tool in use; begins at HOME.
 
     Args:
         robot: the arm.
@@ -137,8 +138,10 @@ class RobotExecutor:
         self, robot: CellRobot, config: MotionConfig, frames: Mapping[str, Pose] = _NO_FRAMES
     ) -> None:
         self.robot = robot
+        self.tool = robot.begins_with
+        """Which of the tools that it changes is in use; "": none."""
         self._config = config
-        self._limits = robot.limits(config)
+        self._limits = {tool: robot.limits(config, tool) for tool in ("", *robot.tools)}
         own = inverse(robot.kinematics.T_flange_tcp)
         self._tcps = {name: own @ k.T_flange_tcp for name, k in robot.tcps.items()}
         self._frames = {name: matrix_of(pose) for name, pose in frames.items()}
@@ -148,7 +151,7 @@ class RobotExecutor:
         # The pose commanded last, which is where the TCP is to 1e-9 m: increments add to it, so that
         # rounding of the inverse does not add up over a program.
         self._T_base_tcp = robot.kinematics.forward(self.q)
-        self._next: tuple[Array, Array] | None = None
+        self._next: tuple[Array, Array, str] | None = None
         self.motion: Motion | None = None
 
     @property
@@ -156,10 +159,16 @@ class RobotExecutor:
         """Where the TCP has been told to be, between motions."""
         return self._T_base_tcp
 
-    def stand(self, q: Array, T_base_tcp: Array) -> None:
-        """Puts the robot where another one has stood between motions: its `q` and `T_base_tcp`."""
-        self.q, self._T_base_tcp = q, T_base_tcp
+    def stand(self, q: Array, T_base_tcp: Array, tool: str) -> None:
+        """Puts the robot where another one has stood between motions: its `q`, `T_base_tcp` and `tool`."""
+        self.q, self._T_base_tcp, self.tool = q, T_base_tcp, tool
         self.motion = self._next = None
+
+    def told(self, command: Command) -> Command:
+        """A command as it is meant now: a move that names no TCP is one of the tool in use."""
+        if self.tool and isinstance(command, MoveJoint | MoveLinear | MoveCircular):
+            return command if command.tcp else replace(command, tcp=self.tool)
+        return command
 
     @property
     def pose(self) -> Pose:
@@ -174,7 +183,9 @@ class RobotExecutor:
         """
         if self.motion is not None:
             raise RuntimeError(f"{self.robot.name} is still moving")
+        command = self.told(command)
         try:
+            expect_tool(self.robot, self.tool, command)
             self.motion = self._plan(command, now)
         except MotionFault as fault:
             raise self._named(fault, command) from None
@@ -184,7 +195,7 @@ class RobotExecutor:
         """The motion has reached its end."""
         if self.motion is None or self._next is None:
             raise RuntimeError(f"{self.robot.name} is not moving")
-        self.q, self._T_base_tcp = self._next
+        self.q, self._T_base_tcp, self.tool = self._next
         self.motion = self._next = None
 
     def stop(self, now: float) -> None:
@@ -226,12 +237,16 @@ class RobotExecutor:
         Of a line or an arc only its end is looked at, in the branch of joint moves; nothing of increments, which begin
         wherever the tool is. Of a pose that external axes decide on as well nothing is known, either (`depends`).
         """
+        meant = self.told(command)
+        assert isinstance(meant, Move)
+        command = meant
         told: Command = command
         if isinstance(command, MoveLinear | MoveCircular):
             told = MoveJoint(
                 command.target, frame=command.frame, tcp=command.tcp, arm_angle=command.arm_angle
             )
         try:
+            expect_tool(self.robot, self.tool, command)
             match command:
                 case MoveAxes():
                     self._axes(command)
@@ -249,6 +264,9 @@ class RobotExecutor:
     def seen_from_arm(self, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
         """The pose that a move leads to, from the base of the arm, wherever tracks have carried it then."""
         k = self.robot.kinematics
+        meant = self.told(command)
+        assert isinstance(meant, MoveJoint | MoveLinear | MoveCircular)
+        command = meant
         q = np.array(self.q)
         for a in command.along:
             q[self.robot.index(a.axis)] = a.position
@@ -398,18 +416,18 @@ class RobotExecutor:
 
     def _limited(self, command: Move) -> MotionLimits:
         """What the arm may do on this command."""
-        part = command.acceleration
+        part, limits = command.acceleration, self._limits[self.tool]
         if part == 1.0:
-            return self._limits
+            return limits
         if not 0.0 < part <= 1.0:
             raise MotionFault(
                 "bad-command",
                 f"acceleration must be a fraction above 0 and at most 1, but it is {part:g}",
             )
         return replace(
-            self._limits,
-            acceleration=self._limits.acceleration * part,
-            linear_acceleration=self._limits.linear_acceleration * part,
+            limits,
+            acceleration=limits.acceleration * part,
+            linear_acceleration=limits.linear_acceleration * part,
         )
 
     def _to_pose(self, command: MoveJoint, now: float) -> Motion:
@@ -518,7 +536,8 @@ class RobotExecutor:
         elif isinstance(command, MoveJoint) and command.frame in self._frames:
             pose = pose_of(self._frames[command.frame] @ matrix_of(command.target))
         else:
-            pose = self.pose
+            own = self.robot.of_tool(self.tool, self._T_base_tcp)
+            pose = pose_of(self._T_world_base @ own)
         message = f"{self.robot.words}: {fault.message}"
         if not self.robot.is_device:
             message += f", at TCP pose {describe(pose)}"
@@ -543,7 +562,7 @@ class RobotExecutor:
         self, command: Command, kind: MotionKind, now: float, path: Trajectory,
         q_end: Array, T_end: Array, result: Pose | None = None,
     ) -> Motion:  # fmt: skip
-        self._next = (q_end, T_end)
+        self._next = (q_end, T_end, tool_after(self.tool, command))
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
         if isinstance(path, AlongTrajectory) or (

@@ -30,7 +30,8 @@ from pn2code.robot.branches import BRANCH_NAMES, BRANCHES, Branch
 from pn2code.robot.chain import Chain, cross, derive
 from pn2code.robot.closed_form import ClosedForm
 from pn2code.robot.model import Arm, Tool
-from pn2code.robot.opw import Robot
+from pn2code.robot.spherical_wrist import SphericalWrist
+from pn2code.robot.three_axes import ThreeAxes
 from pn2code.robot.transforms import Array, inverse
 
 __all__ = ["BRANCHES", "BRANCH_NAMES", "TURN", "Branch", "Conditioning", "Kinematics", "Solution"]
@@ -38,6 +39,9 @@ TURN = 2.0 * math.pi
 CHARACTERISTIC_LENGTH = 1.0  # m: lengths in the Jacobian are divided by it, so that it has no units
 POSITION_TOLERANCE = 1e-11  # m and rad: an answer of the inverse further off is refined
 ACCEPTED_ERROR = 1e-9  # m and rad: an answer further off after refinement is not an answer
+_STRAIGHT = (
+    1e-8  # sine of the bend of a wrist: nearer to zero, nothing is known of the axes around it
+)
 _LIMIT_SLACK = 1e-9  # rad: a target exactly at a limit counts as inside
 
 
@@ -75,20 +79,6 @@ def condition_text(condition: float, digits: int = 0) -> str:
     if condition > MOST_CONDITION:
         return f"above {MOST_CONDITION:,.0f}"
     return f"{condition:.{digits}f}"
-
-
-class SphericalWrist(ClosedForm):
-    """The inverse of arms with parallel axes 2 and 3 and a spherical wrist."""
-
-    def __init__(self, chain: Chain, model: Any, correction: Array, T_flange_tcp: Array) -> None:
-        super().__init__(chain)
-        self._robot = Robot(model)
-        # The library's flange may be turned against the URDF's by a constant rotation.
-        self._T_tcp_library = inverse(correction @ T_flange_tcp)
-
-    def branches(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
-        """Of n poses (n, 4, 4): (n, 8, 6)."""
-        return self._robot.branches(T_base_tcp @ self._T_tcp_library)
 
 
 _SEVEN = (
@@ -241,6 +231,11 @@ class Kinematics:
         centre = frame @ np.append(self._chain.wrist_centre, 1.0)
         axis = frame[:3, :3] @ self._chain.axis(5, [f[None] for f in self._chain.zero])[0]
         return np.stack([centre[:3], axis])
+
+    @property
+    def wrist_axes(self) -> tuple[int, ThreeAxes] | None:
+        """The axes of a spherical wrist, and the index of the first; None: it has none."""
+        return self._form.wrist_axes
 
     # Differential
 
@@ -426,6 +421,10 @@ class Kinematics:
         rows = self.all_branches(self.forward(q)[None], self.arm_angle_of(q))[0]
         off = np.abs((rows - q + math.pi) % TURN - math.pi)
         off[:, self._sliding] = np.abs(rows - q)[:, self._sliding]
+        if self._form.wrist_axes is not None:
+            first, wrist = self._form.wrist_axes
+            if abs(math.sin(wrist.bend(q[first + 1]))) <= _STRAIGHT:
+                off[:, [first, first + 2]] = 0.0  # they are only known together
         away = off.max(axis=1)
         away[np.isnan(away)] = np.inf
         return self.branches[int(np.argmin(away))]
@@ -437,7 +436,10 @@ class Kinematics:
 
         Rows are NaN where the branch does not exist. Limits are not looked at.
         """
-        rows = self.on_branch(T_base_tcp, branch, swivel)
+        return self.in_turn(self.on_branch(T_base_tcp, branch, swivel), start)
+
+    def in_turn(self, rows: Array, start: ArrayLike) -> Array:
+        """Joint positions (n, axes) with full turns added, each nearest to the one before, the first to `start`."""
         path = np.vstack([np.asarray(start, float), rows])
         known = np.flatnonzero(~np.isnan(path[:, 0]))
         slid = path[:, self._sliding]

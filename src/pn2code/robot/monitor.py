@@ -116,6 +116,13 @@ class Monitor:
         self._expected: dict[str, dict[bytes, Sample]] = {}
         self._bases = {r.name: r.T_world_base for r in cell.moving}
         self._devices = frozenset(r.name for r in cell.devices)
+        self._tools = {r.name: r.begins_with for r in cell.moving}
+
+    def use(self, robot: str, tool: str) -> None:
+        """Which of the tools that it changes a robot has in use from now on ("": none): poses are those of its TCP."""
+        self._tools[robot] = tool
+        self._last.pop(robot, None)
+        self._expected.pop(robot, None)
 
     def check(
         self,
@@ -203,7 +210,7 @@ class Monitor:
             path = np.unique(path, axis=0)
         for q, frame, conditioning in zip(path, *robot.kinematics.states(path), strict=True):
             margin, axis = robot.kinematics.limit_margin(q)
-            pose = pose_of(self._bases[name] @ frame)
+            pose = pose_of(self._bases[name] @ robot.of_tool(self._tools[name], frame))
             yield Sample(name, q, pose, conditioning, margin, axis, name in self._devices)
 
     def _note(

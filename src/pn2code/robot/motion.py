@@ -20,6 +20,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import Branch, Kinematics, condition_text
+from pn2code.robot.straight import Leap, Straight
 from pn2code.robot.transforms import (
     Array,
     pose_of,
@@ -28,7 +29,13 @@ from pn2code.robot.transforms import (
 )
 
 FaultKind = Literal[
-    "unreachable", "joint-limit", "axis-speed", "singularity", "collision", "bad-command"
+    "unreachable",
+    "joint-limit",
+    "axis-speed",
+    "singularity",
+    "collision",
+    "wrong-tool",
+    "bad-command",
 ]
 
 # Conditioning (1 m) above this: an axis that is too fast is so because of a singularity.
@@ -391,15 +398,47 @@ class LinearTrajectory:
         # Unwrapped positions close enough that the turns of any instant between are those nearby.
         self.times = np.linspace(0.0, law.duration, count + 1)
         s = self.way(self.times)
+        self._straight: Straight | None = None
         self.grid = self._k.follow(self.line.at(s), branch, start, self.arm_angles(s))
+        if self._k.wrist_axes is not None:
+            self._straight = Straight.of(self._solved, s, self.grid, start, self._k.wrist_axes)
+        if self._straight is not None:
+            more = [self.when(x) for x in self._straight.near]
+            self.times = np.union1d(self.times, np.array(more))
+            self.grid = self._continued(self.way(self.times), start)
 
     def arm_angles(self, s: Array) -> Array | None:
         """The arm angle (rad) at fractions of the way; None: the arm has none."""
         return None if self._swivel is None else self._swivel[0] + s * self._swivel[1]
 
+    @property
+    def leap(self) -> Leap | None:
+        """What an axis would have to do at once where the wrist is straight."""
+        return None if self._straight is None else self._straight.leap
+
     def rows(self, s: Array) -> Array:
-        """Joint positions on the branch at fractions of the way, axes that turn in (-pi, pi]."""
+        """Joint positions at fractions of the way, axes that turn in (-pi, pi].
+
+        They are on the branch of its beginning; behind a straight wrist axis 5 may have the other sign.
+        """
+        rows = self._solved(s)
+        return rows if self._straight is None else self._straight.rows(s, rows)
+
+    def _solved(self, s: Array) -> Array:
         return self._k.on_branch(self.line.at(s), self.branch, self.arm_angles(s))
+
+    def _continued(self, s: Array, start: Array) -> Array:
+        return self._k.in_turn(self.rows(s), start)
+
+    def when(self, s: float) -> float:
+        """At what time it is at a fraction of the way."""
+        if s <= 0.0:
+            return 0.0
+        low, high = 0.0, self.duration
+        for _ in range(60):
+            middle = (low + high) / 2.0
+            low, high = (middle, high) if self._law.at(middle)[0] < s else (low, middle)
+        return high
 
     def way(self, times: Array) -> Array:
         """Fraction of the way at each time, 0 to 1."""
@@ -432,7 +471,10 @@ class LinearTrajectory:
         spins = self.line.spins(now[:, :3, :3])
         twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
         wanted = self._k.led_twist(twist, self.swivel * rate)
-        return np.asarray((np.linalg.pinv(self._k.led_jacobian(q)) @ wanted[..., None])[..., 0])
+        jacobian = self._k.led_jacobian(q)
+        if self._straight is not None:
+            jacobian = self._straight.held(q, jacobian)
+        return np.asarray((np.linalg.pinv(jacobian) @ wanted[..., None])[..., 0])
 
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
@@ -443,7 +485,7 @@ class LinearTrajectory:
 
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way, in order, whenever the arm is there; NaN out of reach."""
-        return self._k.follow(self.line.at(s), self.branch, self.grid[0], self.arm_angles(s))
+        return self._continued(s, self.grid[0])
 
 
 def plan_ptp(
@@ -587,7 +629,7 @@ def led(
 ) -> LinearTrajectory:
     """The joint positions along a way, checked; `swivel`: of the arm angle, where the arm has one."""
     out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start, swivel)
-    _check_start(kinematics, out, start)
+    _check_leap(kinematics, out, start)
     _check_line(kinematics, out, limits)
     return out
 
@@ -681,24 +723,39 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     )
 
 
-def _check_start(kinematics: Kinematics, lin: LinearTrajectory, start: Array) -> None:
-    """In a singularity many joint positions have the same TCP pose; the way must begin at the arm's own.
+def _check_leap(kinematics: Kinematics, lin: LinearTrajectory, start: Array) -> None:
+    """In a singularity many joint positions have the same TCP pose; the way must go on from the arm's own.
 
     What comes after another one says nothing of the arm, so this is looked at first.
     """
-    leap = np.abs(lin.grid[0] - start)
-    axis = int(np.argmax(leap))
-    if not leap[axis] > _SAME_POSITION:  # nan: out of reach, which is told with the rest of the way
-        return
-    arm, condition = kinematics.arm, kinematics.conditioning(start)
+    arm, leap, q, time, hint = kinematics.arm, lin.leap, start, 0.0, ""
+    if leap is not None:
+        assert kinematics.wrist_axes is not None, "it leaps at a straight wrist"
+        axis, by, time = kinematics.wrist_axes[0], abs(leap.by), lin.when(leap.s)
+        if time > 0.0:
+            q = lin.q(time)
+        there = leap.at + leap.by
+        half = math.pi * round(there / math.pi)
+        shown = " or ".join(
+            f"{math.degrees(x) + 0.0:.1f}" for x in (there - half, there - half + math.pi)
+        )
+        hint = f"; on this way it stands at {shown.replace('-0.0 ', '0.0 ')} deg there"
+    else:
+        off = np.abs(lin.grid[0] - start)
+        axis = int(np.argmax(off))
+        by = float(off[axis])
+        if not by > _SAME_POSITION:  # nan: out of reach, which is told with the rest of the way
+            return
+    condition = kinematics.conditioning(q)
     raise MotionFault(
         "singularity",
-        f"the {lin.line.name} begins in a singularity (condition number {condition_text(condition.condition)}, elbow "
-        f"{math.degrees(condition.elbow):.1f} deg from straight, wrist {math.degrees(condition.wrist):.1f} deg): "
-        f"{arm.called(axis)} would have to leap by {arm.shown(axis, leap[axis], 1)} {arm.unit(axis)}",
-        pose=pose_of(kinematics.forward(start)),
-        q=tuple(start.tolist()),
-        time=0.0,
+        f"the {lin.line.name} {'passes' if time > 0.0 else 'begins in'} a singularity (condition number "
+        f"{condition_text(condition.condition)}, elbow {math.degrees(condition.elbow):.1f} deg from straight, wrist "
+        f"{math.degrees(condition.wrist):.1f} deg): {arm.called(axis)} would have to leap by "
+        f"{arm.shown(axis, by, 1)} {arm.unit(axis)}{hint}",
+        pose=pose_of(kinematics.forward(q)),
+        q=tuple(q.tolist()),
+        time=time,
     )
 
 

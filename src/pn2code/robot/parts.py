@@ -21,10 +21,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.commands import Handling, Pose
+from pn2code.robot.commands import CHANGES, Handling, Pose
 from pn2code.robot.ground import REST_GAP, Ground, Rest
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.tool_change import tool_in_use, why_not_coupled, why_not_uncoupled
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 
@@ -34,21 +36,27 @@ class PartFault(Exception):  # noqa: N818
 
 @frozen(eq=False)
 class Part:
-    """One part.
+    """One part, or a tool that robots couple.
 
     Args:
-        frame: `T_world_part`; `T_tcp_part` while it is carried, `T_plate_part` while it stands on a turntable.
+        frame: `T_world_part`; `T_tcp_part` while it is carried, `T_plate_part` while it stands on a turntable. The TCP
+            is that of `tool` of the robot, the coupling of one that changes tools, whichever it has.
         holder: the robot that carries it, "" if it stands.
         plate: the turntable with which it turns, "left/plate"; "": with none.
         up: of what stands on the part that its holder carries, what was upwards then, in its frame; None: it does not.
     """
 
     name: str
-    kind: PartKind
+    kind: PartKind | ToolKind
     frame: Array
     holder: str = ""
     plate: str = ""
     up: Array | None = None
+
+    @property
+    def is_tool(self) -> bool:
+        """Whether it is a tool, which stands on nothing and on which nothing stands."""
+        return isinstance(self.kind, ToolKind)
 
     @property
     def carrier(self) -> str:
@@ -102,6 +110,11 @@ class Parts:
         for kind in self.cell.parts.values():
             for pose in kind.at:
                 self._add(kind, matrix_of(pose))
+        begins = {r.begins_with: r.name for r in self.cell.robots if r.begins_with}
+        for name, tool in self.cell.tools.items():
+            holder = begins.get(name, "")
+            frame = np.eye(4) if holder else matrix_of(self.cell.places[tool.rack])
+            self.present[name] = Part(name, tool, frame, holder)
         self._settle()
 
     @property
@@ -113,7 +126,7 @@ class Parts:
         found = True
         while found:
             found = False
-            for part in list(self.present.values()):
+            for part in self._work():
                 plate = "" if part.carrier else self._plate_under(part)
                 if plate and plate not in self.turning:
                     self._keep(part, self.world(part), plate)
@@ -146,7 +159,7 @@ class Parts:
         out.slack = slack
         out._plates = dict(self._plates)
         out._numbers = {}
-        used = [name.rsplit(".", 1) for name in self.present]
+        used = [p.name.rsplit(".", 1) for p in self._work()]
         for kind in self.cell.parts:
             last = max((int(number) for own, number in used if own == kind), default=0)
             out._numbers[kind] = itertools.count(last + 1)
@@ -160,8 +173,17 @@ class Parts:
 
     def held_by(self, robot: str) -> Part | None:
         """The part that a robot carries; others may stand on it."""
-        held = (p for p in self.present.values() if p.holder == robot and p.up is None)
+        held = (p for p in self._work() if p.holder == robot and p.up is None)
         return next(held, None)
+
+    def _work(self) -> list[Part]:
+        """All that are no tools."""
+        return [p for p in self.present.values() if not p.is_tool]
+
+    def tool_of(self, robot: str) -> str:
+        """The name of the tool that a robot has in use; "": none."""
+        found = tool_in_use(self.present.values(), robot)
+        return found.name if found is not None else ""
 
     def world(self, part: Part) -> Array:
         """`T_world_part` of a part that stands."""
@@ -169,13 +191,18 @@ class Parts:
         return self._plates[part.plate] @ part.frame if part.plate else part.frame
 
     def everywhere(self, joints: Mapping[str, Array]) -> list[tuple[Part, Array]]:
-        """All parts with where they are in the world; `joints`: of the robots that hold some in their tools."""
+        """All parts, but no tools, with where they are in the world; `joints`: of the robots that hold some."""
         return [
             (p, carried_to(self.cell.robot(p.holder), joints[p.holder], p))
             if p.holder
             else (p, self.world(p))
-            for p in self.present.values()
+            for p in self._work()
         ]
+
+    def _grip(self, robot: str, tcp: Array) -> Array:
+        """`T_world_tcp` of the tool that a robot has in use, with its own, the coupling, at `tcp`."""
+        tool = self.tool_of(robot)
+        return self.cell.robot(robot).of_tool(tool, tcp) if tool else tcp
 
     def riders(self, plate: str) -> list[Part]:
         """What turns with a turntable."""
@@ -186,9 +213,14 @@ class Parts:
         others = [
             (p.name, p.kind, self.world(p))
             for p in self.present.values()
-            if not p.holder and p.name != part.name and p.name not in without
+            if isinstance(p.kind, PartKind)
+            and not p.holder
+            and p.name != part.name
+            and p.name not in without
         ]
-        return self._ground.rest(part.kind, self.world(part), others, self._plates, self.slack)
+        kind = part.kind
+        assert isinstance(kind, PartKind), "tools are in their racks"
+        return self._ground.rest(kind, self.world(part), others, self._plates, self.slack)
 
     def turn(self, plate: str, line: frozenset[str] = frozenset()) -> None:
         """A turntable or belt begins to move. Raises PartFault if something on it would not go with it.
@@ -267,7 +299,9 @@ class Parts:
     def _beyond(self, plate: str, part: Part) -> float:
         """How far (m) the middle of a part is beyond the end of a belt, negative: before it."""
         own = self._ground.plates[plate]
-        middle = self._ground.middle(part.kind, self.world(part))
+        kind = part.kind
+        assert isinstance(kind, PartKind), "tools are on no belts"
+        middle = self._ground.middle(kind, self.world(part))
         return float((inverse(own.T_world_axis) @ np.append(middle, 1.0))[0] - own.axis.upper)
 
     def rewind(self, plate: str, frame: Array) -> None:
@@ -281,12 +315,15 @@ class Parts:
 
         Args:
             who: the robot or device, for messages.
-            T_world_tcp: of the robot; None: a device.
+            T_world_tcp: of the robot, of its coupling if it changes tools; None: a device.
 
         Raises PartFault when it is not possible; nothing has changed then.
         """
-        kind = self.cell.parts[handling.part]
         self.settled = ()
+        if handling.effect in CHANGES:
+            assert T_world_tcp is not None, "only a robot changes tools"
+            return self._change(who, handling, T_world_tcp)
+        kind = self.cell.parts[handling.part]
         match handling.effect:
             case "takes":
                 assert T_world_tcp is not None, "only a tool takes parts"
@@ -296,8 +333,25 @@ class Parts:
                 return self._release(who, kind, T_world_tcp)
             case "creates":
                 return self._create(who, kind, handling.place)
-            case "removes":
+            case _:
                 return self._remove(who, kind, handling.place)
+
+    def _change(self, robot: str, handling: Handling, coupling: Array) -> PartChange:
+        """A tool is coupled, and exactly at the coupling from then on; or it is left, exactly in its rack."""
+        kind = self.cell.tools[handling.part]
+        if handling.effect == "couples":
+            why = why_not_coupled(self.present, robot, kind, coupling, self.slack)
+            frame, holder = np.eye(4), robot
+        elif not kind.rack:
+            raise PartFault(f"`{robot}` uncouples tool `{kind.name}`, which has no place")
+        else:
+            frame, holder = matrix_of(self.cell.places[kind.rack]), ""
+            why = why_not_uncoupled(self.present, robot, kind, coupling, frame, self.slack)
+        if why:
+            raise PartFault(why)
+        pose = pose_of(self.present[kind.name].frame if holder else frame)
+        self.present[kind.name] = Part(kind.name, kind, frame, holder)
+        return PartChange(handling.effect, kind.name, pose)
 
     def _take(self, robot: str, kind: PartKind, tcp: Array) -> PartChange:
         held = self.held_by(robot)
@@ -306,10 +360,11 @@ class Parts:
                 f"`{robot}` takes a part `{kind.name}`, but its tool holds `{held.name}` already"
             )
         standing = [p for p in self.present.values() if p.kind is kind and not p.holder]
-        at = f"at TCP pose {describe(pose_of(tcp))}"
+        grip = self._grip(robot, tcp)
+        at = f"at TCP pose {describe(pose_of(grip))}"
         if not standing:
             raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
-        offs = {p.name: _off(kind, self.world(p), tcp) for p in standing}
+        offs = {p.name: _off(kind, self.world(p), grip) for p in standing}
         near = self._nearest([(*offs[p.name], p) for p in standing])
         way, turn = offs[near.name]
         if way > kind.tolerance + self.slack or turn > kind.angle + self.slack:
@@ -326,7 +381,7 @@ class Parts:
         if riders:
             goes = [(near, frame), *((p, frames[p.name]) for p in riders)]
             heavy = self.cell.robot(robot).overload_of(
-                (p.name, p.kind.mass, back @ own) for p, own in goes
+                ((p.name, p.kind.mass, back @ own) for p, own in goes), self.tool_of(robot)
             )
             if heavy:
                 on_it = " and ".join(f"`{p.name}`" for p in riders)
@@ -345,9 +400,10 @@ class Parts:
         held = self.held_by(robot)
         if held is None or held.kind is not kind:
             what = f"`{held.name}`" if held else "nothing"
+            grip = self._grip(robot, tcp)
             raise PartFault(
                 f"`{robot}` releases a part `{kind.name}`, but its tool holds {what}, "
-                f"at TCP pose {describe(pose_of(tcp))}"
+                f"at TCP pose {describe(pose_of(grip))}"
             )
         frame = tcp @ held.frame
         part = Part(held.name, kind, frame)
@@ -441,7 +497,7 @@ class Parts:
         carries = False
         place = self.world(part)[:3, 3]
         near = self._ground.radius(part.kind.name) + 2.0 * REST_GAP
-        for other in self.present.values():
+        for other in self._work():
             if other.holder or other.name == part.name:
                 continue
             off = float(np.linalg.norm(self.world(other)[:3, 3] - place))
@@ -467,7 +523,7 @@ class Parts:
         lifted, is_new, carries = {part.name: part}, True, False
         while is_new:
             is_new = carries = False
-            for other in list(self.present.values()):
+            for other in self._work():
                 if other.holder or other.name in lifted or not self._may_touch(other, lifted):
                     continue
                 rest = self.rest(other)
@@ -517,17 +573,13 @@ class Parts:
             not p.holder
             and kind in ("", p.kind.name)
             and difference(self.world(p), spot)[0] <= p.kind.tolerance
-            for p in self.present.values()
+            for p in self._work()
         )
 
     def _at(self, place: str, kind: PartKind) -> Part | None:
         """The part that stands at a place: those of the kind first, the nearest of them."""
         spot = matrix_of(self.cell.places[place])
-        offs = [
-            (difference(self.world(p), spot)[0], 0.0, p)
-            for p in self.present.values()
-            if not p.holder
-        ]
+        offs = [(difference(self.world(p), spot)[0], 0.0, p) for p in self._work() if not p.holder]
         near = [x for x in offs if x[0] <= x[2].kind.tolerance + self.slack]
         own = [x for x in near if x[2].kind is kind]
         return self._nearest(own or near) if near else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -19,6 +19,7 @@ from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones_table import Zone
 
@@ -105,7 +106,9 @@ class CellRobot:
         axes: its external ones; `home` has all.
         tcps: kinematics to further tool frames, by name.
         carries: kinds of parts that it may take, by name; pace: what its heaviest load leaves of the speeds and the
-            accelerations of its axes.
+            accelerations of its axes; paces: the same with each of its tools.
+        tools: those that it couples, at the TCP of `tool`; in `tcps` is the TCP of each.
+        begins_with: which of them it has at the start, "": none.
         turning: frames that turn with a turntable of it, by name: the axis, by its index, and the pose on its plate.
     """
 
@@ -121,15 +124,41 @@ class CellRobot:
     tcps: Mapping[str, Kinematics] = field(default_factory=dict)
     carries: tuple[str, ...] = ()
     pace: tuple[float, float] = (1.0, 1.0)
+    tools: Mapping[str, ToolKind] = field(default_factory=dict)
+    begins_with: str = ""
+    paces: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
-    def loads(self, kinds: Mapping[str, PartKind], taken: Iterable[str]) -> Iterator[Load]:
-        """What hangs on its flange: the tool, alone and with parts of these kinds."""
-        tool = self.tool
-        own = (tool.name, tool.urdf.mass, tool.urdf.centre) if tool is not None else None
-        frame = self.kinematics.T_flange_tcp
-        yield from payload.loads(own, frame, (kinds[k] for k in taken if k in kinds))
+    def loads(self, kinds: Mapping[str, PartKind], taken: Collection[str]) -> Iterator[Load]:
+        """What hangs on its flange: the tool, alone and with parts of these kinds; with each tool that it may have."""
+        for tool in ("", *self.tools):
+            yield from self.loads_with(tool, kinds, taken)
 
-    def overload(self, kinds: Mapping[str, PartKind], taken: Iterable[str]) -> str:
+    def loads_with(
+        self, tool: str, kinds: Mapping[str, PartKind], taken: Collection[str]
+    ) -> Iterator[Load]:
+        """The same with one of its tools in use; "": with none."""
+        if tool:
+            frame = self.tcps[tool].T_flange_tcp
+            kinds_of = self.tools[tool].takes
+        else:
+            frame = self.kinematics.T_flange_tcp
+            kinds_of = () if self.tools else tuple(kinds)  # a coupling grips nothing
+        own = (kinds[k] for k in taken if k in kinds and k in kinds_of)
+        yield from payload.loads(self._hangs(tool), frame, own)
+
+    def of_tool(self, tool: str, frame: Array) -> Array:
+        """Where the TCP of one of its tools is when its own, the coupling, is at `frame`; "": no tool is in use."""
+        return np.asarray(frame @ self.tools[tool].tool.T_flange_tcp) if tool else frame
+
+    def _hangs(self, tool: str) -> tuple[str, float, Array] | None:
+        """Name, mass and centre of the tool, with what couples it."""
+        if tool:
+            return self.tools[tool].with_coupling(self.tool)
+        if self.tool is None:
+            return None
+        return self.tool.name, self.tool.urdf.mass, self.tool.urdf.centre
+
+    def overload(self, kinds: Mapping[str, PartKind], taken: Collection[str]) -> str:
         """Why it may not carry what it takes, in words that name tool and part; "": it may, or nothing is said."""
         rating = self.arm.urdf.rating
         if rating is None:
@@ -140,18 +169,24 @@ class CellRobot:
                 return f"robot `{self.name}` (`{self.arm.name}`) carries {load.words}, {why}"
         return ""
 
-    def overload_of(self, parts: Iterable[tuple[str, float, Array]]) -> str:
-        """Why it may not carry these together (name, kg, where in the frame of the TCP), in words; "": it may."""
+    def overload_of(self, parts: Iterable[tuple[str, float, Array]], tool: str = "") -> str:
+        """Why it may not carry these together (name, kg, where in the frame of the TCP), in words; "": it may.
+
+        `tool`: which of its tools is in use, "" if none is; the TCP is that of `tool` of the robot in any case.
+        """
         rating = self.arm.urdf.rating
         if rating is None:
             return ""
-        tool = self.tool
-        own = (tool.name, tool.urdf.mass, tool.urdf.centre) if tool is not None else None
         frame = self.kinematics.T_flange_tcp
-        load = payload.together(own, ((n, m, (frame @ T)[:3, 3]) for n, m, T in parts))
+        load = payload.together(
+            self._hangs(tool), ((n, m, (frame @ T)[:3, 3]) for n, m, T in parts)
+        )
         if why := rating.exceeded(load, self.kinematics.alone.wrist_in_flange):
             return f"it carries {load.words}, {why}"
-        if any(f < p - 1e-9 for f, p in zip(rating.factors(load.mass), self.pace, strict=True)):
+        if any(
+            f < p - 1e-9
+            for f, p in zip(rating.factors(load.mass), self.paces.get(tool, self.pace), strict=True)
+        ):
             return f"it carries {load.words}, {load.mass:g} kg, for which its speeds are too high"
         return ""
 
@@ -211,10 +246,10 @@ class CellRobot:
         joints = self.kinematics.joints
         return self.axes.index(axis, joints.stop - joints.start)
 
-    def limits(self, motion: MotionConfig) -> MotionLimits:
-        """What this arm may do under a motion configuration."""
+    def limits(self, motion: MotionConfig, tool: str = "") -> MotionLimits:
+        """What this arm may do under a motion configuration, with one of its tools in use."""
         ones = np.ones(len(self.arm.velocity))
-        fast, ramp = self.pace
+        fast, ramp = self.paces.get(tool, self.pace)
         most = self.arm.velocity * fast
         velocity = most * motion.joint_speed
         acceleration, jerk = ones * motion.joint_acceleration, ones * motion.joint_jerk
@@ -263,6 +298,7 @@ class RobotCell:
         places: poses in the world that have a name.
         frames: in which moves can be given, by name; each in the world.
         zones: boxes in the room, by name.
+        tools: those that robots couple, by name.
     """
 
     robots: tuple[CellRobot, ...]
@@ -273,6 +309,12 @@ class RobotCell:
     frames: Mapping[str, Pose] = field(default_factory=dict)
     devices: tuple[CellRobot, ...] = ()
     zones: Mapping[str, Zone] = field(default_factory=dict)
+    tools: Mapping[str, ToolKind] = field(default_factory=dict)
+
+    @property
+    def kinds(self) -> tuple[PartKind | ToolKind, ...]:
+        """All that may lie somewhere or be carried: the kinds of parts, and the tools."""
+        return (*self.parts.values(), *self.tools.values())
 
     @property
     def moving(self) -> tuple[CellRobot, ...]:

@@ -44,6 +44,8 @@ from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
+from pn2code.robot.tool_contacts import also_of_tools, coupling
+from pn2code.robot.tools_table import ToolKind, expect_somewhere, read_tools
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones import unread
 from pn2code.robot.zones_table import read_zones
@@ -79,28 +81,36 @@ def load(
         return Table(geometry.get(name, {}), (name,), at, d, geometry, keys)
 
     motion = _motion(table("motion", MOTION))
+    kinds = read_kinds(table("parts", None), folder)
+    places = read_places(table("places", None))
+    primitives = geometry.get("primitives", {})
+    tools = read_tools(table("tools", None), folder, kinds, places)
     robots = tuple(
         robot
         for name, robot_table in table("robots", None).named(ROBOT)
         if (robot_table.data or not partial)
-        and (robot := _robot(robot_table, name, folder)) is not None
+        and (robot := _robot(robot_table, name, folder, tools)) is not None
     )
     names = tuple(geometry.get("robots", {}))
-    kinds = read_kinds(table("parts", None), folder)
-    places = read_places(table("places", None))
+    expect_somewhere(
+        table("tools", None),
+        tools,
+        {r.name: r.begins_with for r in robots},
+        _uncoupled(primitives),
+    )
     plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
     frames = read_frames(table("frames", None), plates)
     named = dict(table("robots", None).named(ROBOT))
-    taken = _taken(geometry.get("primitives", {}))
+    taken = _said_of(primitives, "takes")
     robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
     hulls = [hull for k in kinds.values() if (hull := Hull.of(k.shape)) is not None]
     around = Around(folder, places, max((h.radius for h in hulls), default=0.0))
     devices = read_devices(table("devices", None), around)
-    scene = _scene(table("scene", SCENE), robots, devices, names, kinds, folder)
+    scene = _scene(table("scene", SCENE), robots, devices, names, (kinds, tools), folder)
     zones = read_zones(table("zones", None))
     if len(d.errors) != before:
         return None
-    cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones)
+    cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones, tools)
     for name in unread(cell) if zones else ():
         d.error(
             codes.ROBOT_VALUE,
@@ -121,11 +131,20 @@ def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
     return replace(robot, turning=turning) if turning else robot
 
 
-def _taken(primitives: object) -> tuple[str, ...]:
-    """The kinds of parts that tools take, in order."""
+def _said_of(primitives: object, key: str) -> tuple[str, ...]:
+    """What the primitives say of a key, in order: the kinds of parts that are taken."""
     tables = primitives.values() if isinstance(primitives, Mapping) else ()
-    kinds = [t.get("takes") for t in tables if isinstance(t, Mapping)]
-    return tuple(dict.fromkeys(k for k in kinds if isinstance(k, str)))
+    found = [t.get(key) for t in tables if isinstance(t, Mapping)]
+    return tuple(dict.fromkeys(k for k in found if isinstance(k, str)))
+
+
+def _uncoupled(primitives: object) -> dict[str, list[str]]:
+    """By tool, the primitives that uncouple it."""
+    out: dict[str, list[str]] = {}
+    for name, t in primitives.items() if isinstance(primitives, Mapping) else ():
+        if isinstance(t, Mapping) and isinstance(t.get("uncouples"), str):
+            out.setdefault(t["uncouples"], []).append(name)
+    return out
 
 
 def _loaded(
@@ -144,8 +163,11 @@ def _loaded(
     rating = robot.arm.urdf.rating
     if rating is None or not rating.derating:
         return robot
-    heaviest = max(load.mass for load in robot.loads(kinds, carries))
-    return replace(robot, pace=rating.factors(heaviest))
+
+    def pace(tool: str) -> tuple[float, float]:
+        return rating.factors(max(load.mass for load in robot.loads_with(tool, kinds, carries)))
+
+    return replace(robot, pace=pace(""), paces={name: pace(name) for name in robot.tools})
 
 
 def _motion(t: Table) -> MotionConfig:
@@ -166,7 +188,7 @@ def _motion(t: Table) -> MotionConfig:
     return out
 
 
-def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
+def _robot(t: Table, name: str, folder: Path, tools: Mapping[str, ToolKind]) -> CellRobot | None:
     model = t.text("model")
     arm = find_arm(model, folder, t.at("model"), t.d) if model else None
     tool_name = t.text("tool")
@@ -178,7 +200,11 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     carries = t.texts("carries")
     axes = read_axes(t, name, base, folder)
     frames = t.table("tcps").named(t.inner("tcps")) if t.has("tcps") else ()
-    further = {key: read_own_pose(p) for key, p in frames}
+    further = {key: matrix_of(read_own_pose(p)) for key, p in frames}
+    changed = _changed(t, tools)
+    begins_with = t.text("begins_with")
+    if begins_with and begins_with not in t.texts("tools"):
+        t.wrong("begins_with", "one of `tools` of the robot", did_you_mean(begins_with, changed))
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
@@ -191,10 +217,13 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     if branch is None and branch_name != "any":
         own_names = ", ".join(f"`{b}`" for b in kinematics.branches)
         t.wrong("branch", f"a branch of `{model}` ({own_names}) or `any`")
+    further |= {
+        key: kinematics.T_flange_tcp @ kind.tool.T_flange_tcp for key, kind in changed.items()
+    }
     tcps = {
         key: own
-        for key, pose in further.items()
-        if (own := Kinematics.to(arm, matrix_of(pose), t.at("model"), t.d)) is not None
+        for key, frame in further.items()
+        if (own := Kinematics.to(arm, frame, t.at("model"), t.d)) is not None
     }
     if kinematics.arm_angle is not None:
         angle = math.radians(arm_angle)
@@ -207,19 +236,41 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
             t.at("arm_angle"),
             hint="only arms with seven axes have one; leave the key out",
         )
+    robot = CellRobot(
+        name,
+        arm,
+        tool,
+        kinematics,
+        base,
+        home,
+        branch,
+        tcps=tcps,
+        carries=carries,
+        tools=changed,
+        begins_with=begins_with,
+    )
     if not axes:
-        return CellRobot(
-            name, arm, tool, kinematics, base, home, branch, tcps=tcps, carries=carries
-        )
+        return robot
     whole = with_axes(arm, axes, name, t.at("axes"), t.d)
     if whole is None:
         return None
     home = (*(a.home for a in axes.tracks), *home, *(a.home for a in axes.tables))
     carried = WithAxes(kinematics, axes, whole)
     tcps = {key: WithAxes(own, axes, whole) for key, own in tcps.items()}
-    return CellRobot(
-        name, whole, tool, carried, base, home, branch, axes, tcps=tcps, carries=carries
-    )
+    return replace(robot, arm=whole, kinematics=carried, home=home, axes=axes, tcps=tcps)
+
+
+def _changed(t: Table, tools: Mapping[str, ToolKind]) -> dict[str, ToolKind]:
+    """The tools that a robot changes."""
+    frames = t.data.get("tcps")
+    for name in t.texts("tools"):
+        if name not in tools:
+            known = ", ".join(f"`{k}`" for k in tools)
+            otherwise = f"known tools: {known}" if known else f"add `[tools.{name}]`"
+            t.wrong_name("tools", name, "tool", did_you_mean(name, tuple(tools), otherwise))
+        elif isinstance(frames, Mapping) and name in frames:
+            t.wrong_name("tools", name, "name of its own", "`tcps` has a tool frame of that name")
+    return {name: tools[name] for name in t.texts("tools") if name in tools}
 
 
 def _expect_wrist(arm: Arm, kinematics: Kinematics, d: Diagnostics) -> None:
@@ -276,16 +327,21 @@ def _scene(
     robots: tuple[CellRobot, ...],
     devices: tuple[CellRobot, ...],
     names: tuple[str, ...],
-    kinds: Mapping[str, PartKind],
+    carried: tuple[Mapping[str, PartKind], Mapping[str, ToolKind]],
     folder: Path,
 ) -> SceneConfig:
+    kinds, tools = carried
     panel = _panel(t.table("panel")) if t.has("panel") else None
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = read_solids(t.tables("objects"), folder, solid=bool(kinds))
     plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
     contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
-    _named_once(t, objects, kinds)
+    contacts += coupling(robots, tools)
+    _expect_holders(t, tools, objects)
+    _named_once(
+        t, objects, {**dict.fromkeys(kinds, "kind of parts"), **dict.fromkeys(tools, "tool")}
+    )
     things = [
         *names,
         *(r.name for r in devices),
@@ -293,9 +349,10 @@ def _scene(
         "floor",
         *(o.name for o in objects),
         *(f"{k}.1" for k in kinds),
+        *tools,
     ]
     for c in t.tables("contacts"):
-        contacts.append(_contact(c, things))
+        contacts += also_of_tools(_contact(c, things), tools)
     out = SceneConfig(
         panel=panel,
         objects=objects,
@@ -305,6 +362,22 @@ def _scene(
     )
     t.done()
     return out
+
+
+def _expect_holders(
+    t: Table, tools: Mapping[str, ToolKind], objects: tuple[SceneObject, ...]
+) -> None:
+    """What holds tools is among the objects of the scene."""
+    known = [o.name for o in objects]
+    for name, kind in tools.items():
+        for holder in kind.holders:
+            if holder not in known:
+                t.d.error(
+                    codes.ROBOT_VALUE,
+                    f"`tools.{name}.holders` names `{holder}`, which is no object of the scene",
+                    t.at(),
+                    hint=did_you_mean(holder, known, "it names `[scene] objects`"),
+                )
 
 
 def _contact(t: Table, things: list[str]) -> ContactRule:
@@ -402,7 +475,7 @@ def _panel(t: Table) -> PanelConfig:
     return out
 
 
-def _named_once(t: Table, objects: tuple[SceneObject, ...], kinds: Mapping[str, PartKind]) -> None:
+def _named_once(t: Table, objects: tuple[SceneObject, ...], others: Mapping[str, str]) -> None:
     """Reports names that two objects have: messages and contact rules name them."""
     seen: set[str] = set()
     for o in objects:
@@ -414,10 +487,10 @@ def _named_once(t: Table, objects: tuple[SceneObject, ...], kinds: Mapping[str, 
                 hint="give each a name of its own",
             )
         seen.add(o.name)
-        if o.name.split(".")[0] in kinds:
+        if o.name.split(".")[0] in others:
             t.d.error(
                 codes.ROBOT_VALUE,
-                f"an object of the scene and a kind of parts are called `{o.name.split('.')[0]}`",
+                f"an object of the scene and a {others[o.name.split('.')[0]]} are called `{o.name.split('.')[0]}`",
                 t.at("objects"),
                 hint="give each a name of its own",
             )

@@ -18,6 +18,7 @@ import numpy as np
 from pn2code.robot.branches import SEVEN
 from pn2code.robot.chain import Chain, cross
 from pn2code.robot.closed_form import ClosedForm
+from pn2code.robot.three_axes import ThreeAxes
 from pn2code.robot.transforms import Array, Flags, inverse, rotation_about
 
 AXES = 7
@@ -47,7 +48,8 @@ class SevenAxes(ClosedForm):
         self._T_flange = chain.zero[AXES]
         self._wrist_in_flange = (inverse(self._T_flange) @ np.append(self._wrist, 1.0))[:3]
         self._wrist_in_5 = (inverse(chain.zero[4]) @ np.append(self._wrist, 1.0))[:3]
-        self._first, self._last = _Euler(self._h[:3]), _Euler(self._h[4:])
+        self._first, self._last = ThreeAxes(self._h[:3]), ThreeAxes(self._h[4:])
+        self.wrist_axes = 4, self._last
         # Axis 4, so directed that the arm angle is 0 where axis 3 is at zero.
         self._sign = 1.0 if float(h4 @ self._h[1]) > 0.0 else -1.0
 
@@ -189,32 +191,6 @@ class SevenAxes(ClosedForm):
         a, b = self.chain.axis(4, frames), self.chain.axis(6, frames)
         sine = np.linalg.norm(cross(a, b), axis=1)
         return np.asarray(np.arctan2(sine, np.abs((a * b).sum(1))))
-
-
-class _Euler:
-    """Angles of three axes that meet, each at right angles to the next, from the rotation that they make together."""
-
-    def __init__(self, h: Array) -> None:
-        z, y, last = h
-        x = np.cross(y, z)
-        self._basis = np.stack([x, y, z], axis=1)
-        # Axis 3 is axis 1 turned about axis 2 by this.
-        self._ahead = math.atan2(float(last @ x), float(last @ z))
-        self._turn = rotation_about(y, self._ahead)
-
-    def angles(self, rotation: Array, side: int) -> Array:
-        """(n, 3); `side` 0: the second angle is positive."""
-        m = self._basis.T @ (rotation @ self._turn) @ self._basis
-        sign = 1.0 if side == 0 else -1.0
-        sine = np.hypot(m[:, 0, 2], m[:, 1, 2])
-        second = np.arctan2(sign * sine, m[:, 2, 2])
-        first = np.arctan2(sign * m[:, 1, 2], sign * m[:, 0, 2])
-        third = np.arctan2(sign * m[:, 2, 1], -sign * m[:, 2, 0])
-        # Straight: only the sum is known, and the first axis stands at zero.
-        is_straight = sine < 1e-12
-        first = np.where(is_straight, 0.0, first)
-        third = np.where(is_straight, np.arctan2(m[:, 1, 0], m[:, 1, 1]), third)
-        return np.stack([first, second - self._ahead, third], axis=1)
 
 
 def derive(chain: Chain, T_flange_tcp: Array) -> SevenAxes | str:

@@ -18,7 +18,7 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.payload import Rating
-from pn2code.robot.transforms import Array, rotation_xyz
+from pn2code.robot.transforms import Array, pose_of, rotation_xyz
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed"]
 _MAX_BYTES = 8_000_000
@@ -333,6 +333,33 @@ def with_tool(arm: Urdf, flange: str, tool: Urdf | None, prefix: str = "tool_") 
     mount = etree.SubElement(out, "joint", name=f"{prefix}mount", type="fixed")
     etree.SubElement(mount, "parent", link=flange)
     etree.SubElement(mount, "child", link=prefix + tool.root)
+    return str(etree.tostring(out, encoding="unicode", pretty_print=True))
+
+
+def as_one_link(tree: Urdf) -> str:
+    """One URDF text: all shapes of a tree, with joints at zero, in one link, whose frame is that of its root."""
+    out = etree.Element("robot", name=tree.name)
+    for material in tree.xml.findall("material"):
+        out.append(copy.deepcopy(material))
+    one = etree.SubElement(out, "link", name="base")
+    for link in tree.xml.findall("link"):
+        frame = np.eye(4)
+        for joint in tree.chain(link.get("name")):
+            frame = frame @ joint.T_parent_joint
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            added = copy.deepcopy(shape)
+            origin = added.find("origin")
+            own = np.eye(4)
+            own[:3, 3] = _numbers(origin, "xyz", 3, "0 0 0")
+            own[:3, :3] = rotation_xyz(*_numbers(origin, "rpy", 3, "0 0 0"))
+            if origin is None:
+                origin = etree.Element("origin")
+                added.insert(0, origin)
+            pose = pose_of(frame @ own)
+            origin.set("xyz", " ".join(repr(float(v)) for v in (pose.x, pose.y, pose.z)))
+            origin.set("rpy", " ".join(repr(float(v)) for v in (pose.rx, pose.ry, pose.rz)))
+            one.append(added)
+    _absolute(out, tree.path.parent)
     return str(etree.tostring(out, encoding="unicode", pretty_print=True))
 
 

@@ -20,8 +20,10 @@ from lxml import etree
 from pn2code.base.frozen import frozen
 from pn2code.robot.hulls import Hull
 from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.parts_table import PartKind
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
@@ -64,9 +66,9 @@ class ZoneWatch:
     def __init__(self, cell: RobotCell) -> None:
         self.cell = cell
         # Without zones nothing is asked, and meshes need not be read.
-        moving, kinds = (cell.moving, cell.parts.values()) if cell.zones else ((), ())
+        moving, kinds = (cell.moving, cell.kinds) if cell.zones else ((), ())
         self._boxes = {r.name: tuple(_boxes(r)) for r in moving}
-        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in kinds}
+        self._kinds = {k.name: _corners(list(_of_kind(k))) for k in kinds}
         self._frames = {name: inverse(matrix_of(z.pose)) for name, z in cell.zones.items()}
         self.limited = tuple(z for z in cell.zones.values() if z.max_speed is not None)
 
@@ -155,8 +157,25 @@ class ZoneWatch:
         return None
 
 
+def _of_kind(kind: PartKind | ToolKind) -> Iterator[Hull | None]:
+    """The shapes of a part or tool, in its frame; None: one cannot be read."""
+    if isinstance(kind, PartKind):
+        yield Hull.of(kind.shape)
+        return
+    tree = kind.tool.urdf
+    for link in tree.links:
+        frame = np.eye(4)
+        for joint in tree.chain(link):
+            frame = frame @ joint.T_parent_joint
+        for hull in _shapes(tree, link):
+            yield None if hull is None else hull.at(frame)
+
+
 def unread(cell: RobotCell) -> Iterator[str]:
     """The links with a shape that cannot be read, so that nobody knows whether they are in a zone."""
+    for tool in cell.tools.values():
+        if any(shape is None for shape in _of_kind(tool)):
+            yield tool.name
     for robot in cell.moving:
         for link, (tree, name) in _trees(robot).items():
             if any(shape is None for shape in _shapes(tree, name)):

@@ -495,11 +495,18 @@ class _Analyser:
         if len(marked) == 1 and counts[marked[0]] == 1:
             return True
         what = ", ".join(f"`{places[p].short}`" for p in control)
-        found = (
-            "hold no token initially" if not marked
-            else "hold several tokens initially" if None not in counts.values()
-            else "have an initial marking whose size is not known"
-        )  # fmt: skip
+        computed = [p for p, n in counts.items() if n is None]
+        if computed:
+            self.d.error(
+                codes.NOT_SEQUENTIAL,
+                f"the initial marking of place `{places[computed[0]].short}`, which tells where {self.owner.phrase} "
+                "is, is computed: how many tokens it has is not known before the run",
+                places[computed[0]].origins[0],
+                notes=[f"the places that tell where it is are {what}"],
+                hint="write the token itself, or a constant that is one (`val start = ..`): no function, no condition",
+            )
+            return False
+        found = "hold several tokens initially" if marked else "hold no token initially"
         self.d.error(
             codes.NOT_SEQUENTIAL,
             f"the places that tell where {self.owner.phrase} is {found}",

@@ -321,10 +321,11 @@ class StepTranslator:
         if (
             self.machine.owner.kind is OwnerKind.DEVICE
             and handling
-            and handling.effect in ("takes", "releases")
+            and handling.effect not in ("creates", "removes")
         ):
+            what = "a tool" if handling.is_of_tool else "a part"
             raise UnsupportedError(
-                f"`{name}` {handling.effect} a part, but device `{self.machine.owner.name}` has no arm",
+                f"`{name}` {handling.effect} {what}, but device `{self.machine.owner.name}` has no arm",
                 span,
                 codes.PRIMITIVE,
             )

@@ -52,7 +52,8 @@ from pn2code.robot.commands import (
 from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
-from pn2code.robot.parts import PartFault
+from pn2code.robot.parts import PartChange, PartFault
+from pn2code.robot.parts_table import PartKind
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
@@ -658,6 +659,10 @@ class Engine:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
             raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
+        if change.effect == "removes":
+            self._expect_unclamped(robot, self.cell.parts[handling.part], change)
+        if robot.arm is not None:
+            self.monitor.use(robot.name, robot.arm.tool)
         for one in (change, *self.parts.parts.settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
@@ -669,6 +674,17 @@ class Engine:
                 "part": change.part,
             }
         )
+
+    def _expect_unclamped(self, robot: RobotRunner, kind: PartKind, change: PartChange) -> None:
+        """A part that leaves the cell is in no clamp that holds it."""
+        stands = {r.name: r for r in self._arms()}
+        for held in holding(self.cell, kind, matrix_of(change.pose)):
+            q = stands[held.device.name].joints(self.now)
+            if held.holds(q):
+                why = held.words(robot.name, change.part, q, "removes")
+                raise CellStoppedError(
+                    f"{robot.at(robot.line)}: {why}, part at {describe(change.pose)}"
+                )
 
     def _heard(self, event: Event) -> None:
         """Events of an interpreter: occurrences of net transitions, messages consumed and written."""

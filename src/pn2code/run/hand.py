@@ -169,25 +169,26 @@ class Hand:
         )
         return None
 
-    def answer(self, party: str) -> Said | None:
-        """What the person has answered; None: nothing yet, and there is still time."""
+    def answer(self, party: str, sees: Callable[[], Scalar | None] | None = None) -> Said | None:
+        """What the person has answered; None: nothing yet, and there is still time.
+
+        Args:
+            sees: what the sensor sees now, of one that sees the scene: that may have changed since it was asked.
+        """
         if (said := self._answers.pop(party, None)) is not None:
             return said
         question = self._questions.get(party)
         if question is None:
             return Said(None)
-        now = self._clock()
-        own = question.choice.text(question.own)
-        about = f"sensor {question.choice.sensor}"
-        if not self._wishes.present():
-            del self._questions[party]
-            return Said(question.own, "", f"{about}: {own}, as nobody was there any more to answer")
-        if now < question.until:
-            return None
+        why = "nobody was there any more to answer"
+        if self._wishes.present():
+            if self._clock() < question.until:
+                return None
+            why = f"nobody answered within {self.patience:g} s"
         del self._questions[party]
-        return Said(
-            question.own, "", f"{about}: {own}, as nobody answered within {self.patience:g} s"
-        )
+        own = question.own if sees is None else sees()
+        text = question.choice.text(own) + (" is seen now" if sees is not None else "")
+        return Said(own, "", f"sensor {question.choice.sensor}: {text}, as {why}")
 
     # --- holding -----------------------------------------------------------------------------------
 

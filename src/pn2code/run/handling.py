@@ -36,7 +36,11 @@ class PartKeeper:
         """Shows the parts of the start. PartFault if one overlaps something."""
         self._show_changed()
         for name in self.parts.present:
-            self._expect_apart(name, f"part `{name}`, as `[parts.{name.split('.')[0]}]` places it,")
+            what = f"part `{name}`, as `[parts.{name.split('.')[0]}]` places it,"
+            if self.parts.present[name].is_tool:
+                what = f"tool `{name}`, at its `rack`,"
+            if not self.parts.present[name].holder:
+                self._expect_apart(name, what)
 
     def handle(self, who: str, handling: Handling, tcp: Array | None) -> PartChange:
         """Does to a part what an action does at its end; `tcp`: `T_world_tcp` of a robot.
@@ -56,6 +60,8 @@ class PartKeeper:
                 if rider.effect == "releases":
                     does = f"`{who}` releases `{part.name}` with `{rider.part}` on it, which"
                     self._expect_apart(rider.part, does)
+        elif change.effect == "uncouples":
+            self._expect_apart(part.name, f"`{who}` uncouples tool `{part.name}`, which")
         elif change.effect == "creates":
             self._expect_apart(
                 part.name, f"`{who}` puts `{part.name}` at `{handling.place}`, which"

@@ -140,7 +140,9 @@ class RealtimeEngine(Engine):
             return False
         if robot.asking is None:
             return Engine._robot_turn(self, robot)
-        said = self.hand.answer(robot.name)
+        is_seen = robot.asking.sensor in self.sensors.seen
+        sees = partial(self._sensor_says, robot, robot.asking) if is_seen else None
+        said = self.hand.answer(robot.name, sees)
         if said is None:
             return False
         self._heed_request(robot, self._told(robot, robot.asking, said))

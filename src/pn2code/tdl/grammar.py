@@ -11,7 +11,8 @@ KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
     "move", "home", "axes", "via", "in", "at", "acceleration", "speed", "default",
     "wait", "until", "read", "into", "clear", "write", "signal",
-    "compute", "tool", "takes", "releases", "creates", "removes", "for",
+    "compute", "tool", "takes", "releases", "creates", "removes",
+    "couples", "uncouples", "for",
     "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
@@ -102,7 +103,7 @@ TRUE: "true"
 FALSE: "false"
 HOME: "home"
 TOOL: "tool"
-EFFECT: "takes" | "releases" | "creates" | "removes"
+EFFECT: "takes" | "releases" | "creates" | "removes" | "couples" | "uncouples"
 SPEED: "speed"
 SIGNAL: "signal"
 SINGLE: "single"

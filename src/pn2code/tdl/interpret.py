@@ -31,7 +31,16 @@ from pn2code.tdl.evaluate import (
     evaluate,
     show,
 )
-from pn2code.tdl.messages import from_si, scalar_of, scalars_of, stored_value, to_si, typed_values
+from pn2code.tdl.messages import (
+    along_to_si,
+    axes_to_si,
+    from_si,
+    scalar_of,
+    scalars_of,
+    stored_value,
+    to_si,
+    typed_values,
+)
 from pn2code.tdl.requests import (
     AwaitFile,
     Event,
@@ -364,7 +373,7 @@ class Interpreter:
                 case None:
                     return commands.MoveHome(joint, ramp)
                 case t.Axes(angles):
-                    axes = tuple(math.radians(self._number(a)) for a in angles)
+                    axes = axes_to_si(map(self._number, angles))
                     return commands.MoveAxes(axes, joint, ramp, along)
                 case target:
                     return commands.MoveJoint(
@@ -384,9 +393,7 @@ class Interpreter:
         return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp, elbow)
 
     def _external(self, a: t.Along) -> commands.Along:
-        number = self._number(a.position)
-        position = number / 1000.0 if a.is_track else math.radians(number)
-        return commands.Along(a.axis, position, a.is_track)
+        return along_to_si(a, self._number(a.position))
 
     def _move_speed(self, s: t.Move) -> float | None:
         if s.speed is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import astuple
 from typing import Any
 
@@ -23,6 +24,17 @@ def to_si(pose: ScriptPose) -> commands.Pose:
         math.radians(pose.ry),
         math.radians(pose.rz),
     )
+
+
+def axes_to_si(angles: Iterable[float]) -> tuple[float, ...]:
+    """A joint position of a script: degrees to radians."""
+    return tuple(map(math.radians, angles))
+
+
+def along_to_si(a: t.Along, position: float) -> commands.Along:
+    """Where an external axis goes: of a track millimetres to metres, of a turntable degrees to radians."""
+    metres_or_radians = position / 1000.0 if a.is_track else math.radians(position)
+    return commands.Along(a.axis, metres_or_radians, a.is_track)
 
 
 def from_si(pose: commands.Pose, asked: commands.Pose, nominal: ScriptPose) -> ScriptPose:

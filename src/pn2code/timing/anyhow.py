@@ -31,11 +31,13 @@ class Anyhow:
     Args:
         why: why not all are known; "": they are.
         met: by element and number of the place: where the arm stands then (None: a device).
+        adds_up: whether all time is that of commands, so that there is an upper bound; in a timed net programs wait.
     """
 
     def __init__(self, doings: Doings) -> None:
         self.doings, self.graph = doings, doings.graph
         self.why = self.graph.why
+        self.adds_up = not self.graph.partition.net.timed
         self.nodes: list[Node] = []
         self.successors: list[list[Arc]] = []
         self.met: dict[tuple[int, int], Stand | None] = {}

@@ -18,6 +18,7 @@ from pn2code.geometry.legs import DIGITS_OF_TIME, Planner, Stand
 from pn2code.robot.belts import stopping
 from pn2code.robot.commands import Command, ToolAction, Wait
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.semantics.game.token_game import GameError
 
 NS = 1_000_000_000
 FOREVER = 10**18
@@ -73,6 +74,7 @@ class Doings:
         self.arm_of = {owner: i for i, owner in enumerate(self.arms)}
         self.why = ""
         self._known: dict[tuple[int, int], Doing | None] = {}
+        self._waits: dict[int, int] = {}
 
     def is_told(self, element: int) -> bool:
         """Whether somebody who is not the supervisor lets it occur."""
@@ -87,6 +89,21 @@ class Doings:
         if key not in self._known:
             self._known[key] = self._worked_out(element, stand)
         return self._known[key]
+
+    def waits(self, element: int) -> int:
+        """ns: how long a script waits after this, as its control token has a delay."""
+        if element not in self._waits:
+            self._waits[element] = self._delay(element)
+        return self._waits[element]
+
+    def _delay(self, element: int) -> int:
+        if not self.graph.partition.net.timed or not self.is_told(element):
+            return 0
+        try:
+            return max(0, _ns(self.graph.delay(self.graph.elements[element])))
+        except GameError:
+            self.why = self.why or "waits"
+            return 0
 
     def _worked_out(self, element: int, stand: Stand | None) -> Doing | None:
         e = self.graph.elements[element]

@@ -36,8 +36,9 @@ from pn2code.verify.exploring.limits import Limits
 
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
 AT_ONCE = "sensors and people answer at once"
+CLOCK_RUNS = "a unit of the net's time is a second (`--time-scale 1`)"
 _OPEN = {
-    "timed": "the net is timed, and when its time stamps are reached is not followed",
+    "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
     "belt": "how far a belt runs depends on the parts on it, which are not followed",
     "situations": "the cell can come to more situations than were looked at",
@@ -185,7 +186,8 @@ class _Look:
     def _pose(self, robot: str, stand: Stand | None) -> str:
         if stand is None or self.cell.robot(robot).is_device:
             return ""
-        return numbers(pose_of(self.cell.robot(robot).T_world_base @ stand.T_base_tcp))
+        own = self.cell.robot(robot)
+        return numbers(pose_of(own.T_world_base @ own.of_tool(stand.tool, stand.T_base_tcp)))
 
     def _faults(self) -> Iterator[Fault]:
         for (element, _), why in self.anyhow.faults.items():
@@ -198,7 +200,7 @@ class _Look:
         at_least = at_most = None
         if not anyhow.why:
             at_least = anyhow.least()
-            if not self.graph.partition.net.timed:
+            if anyhow.adds_up:
                 way, _ = anyhow.most()
                 at_most = None if way is None else way.ns
         owed = [] if search.why else [*self._owed()]
@@ -274,7 +276,7 @@ class _Look:
             yield owner.phrase, ns
 
     def _owed_by_work(self) -> Iterator[tuple[str, int | None]]:
-        """The same of a net that is timed: how long by what they do themselves while they owe it.
+        """The same where not all situations are known: how long by what they do themselves while they owe it.
 
         Whoever waits meanwhile owes it for longer still, so only what is too long is known.
         """

@@ -10,6 +10,9 @@ an instant everything happens that can, in each order that the net permits; then
 time goes by until the first of it ends. A sensor says anything. A cycle ends when the supervisor has finished and the
 arms rest, as a run does.
 
+In a timed net the clock is under way as well: each second it goes on by one unit, and time stamps come nearer, in
+whatever state the cell is then. A script waits exactly as long as its control token has a delay.
+
 What ends within `TIE` of what ends first may as well end first: how long a move takes is known to some microseconds.
 """
 
@@ -21,8 +24,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import record
+from pn2code.geometry.graph import CLOCK
 from pn2code.geometry.legs import Stand
-from pn2code.timing.doings import FOREVER, Doing, Doings
+from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc, Way, Ways
 from pn2code.timing.steps import Kind, kinds, stops
 
@@ -32,8 +36,12 @@ MOST = 250_000
 """Situations that are looked at."""
 BEGINS = -1
 """The mark of an arc on which something begins."""
+TICKS = -2
+"""What the clock has under way: the rest of a second."""
+WAITS = -3
+"""What a script has under way that waits."""
 UnderWay = tuple[tuple[int, int, int], ...]
-"""By owner in order: (owner, element, ns that it still takes)."""
+"""By owner in order, the clock first: (owner, element, `TICKS` or `WAITS`, ns that it still takes)."""
 Situation = tuple[int, tuple[Stand, ...], UnderWay]
 
 
@@ -54,7 +62,7 @@ class Search:
     """Goes through the situations in the order of their times.
 
     Args:
-        why: why not all are known: "timed", "situations", "overtaken", or what the graph says; "": they are.
+        why: why not all are known: "situations", "overtaken", or what the graph says; "": they are.
         seen_until: ns: all situations before this time have been seen.
         stuck: situations in which nothing more happens, though the cell is not at its end, and no fault is why.
         faults: why the cell stops at some of them.
@@ -79,13 +87,13 @@ class Search:
         self._kinds = kinds(self.graph)
         self._stopped = stops(self.graph)
         self._told: dict[int, frozenset[int]] = {}
+        places = {p.name: p.index for p in self.graph.running.net.places}
+        self._calm = places.get("cell.supervisor.calm", -1)
 
     def explore(self) -> None:
         """Goes through all of them, and finds the best and the worst."""
-        if self.graph.partition.net.timed:
-            self.why = self.why or "timed"
-            return
-        self._number((0, self.doings.homes, ()))
+        clock = ((CLOCK, TICKS, NS),) if self.graph.partition.net.timed else ()
+        self._number((0, self.doings.homes, clock))
         self._from.append((-1, BEGINS))
         times = [0]
         todo = [(0, 0)]
@@ -160,9 +168,13 @@ class Search:
         begins: dict[int, list[tuple[int, Doing]]] = {}
         ending: dict[int, list[int]] = {}
         mixed: set[int] = set()
+        ticks: list[tuple[int, int]] = []
         for element, target in self.graph.arcs[state]:
             kind = self._kinds[element]
             if kind is Kind.ENDS:
+                continue
+            if kind is Kind.CLOCK:
+                ticks.append((element, target))
                 continue
             if target in self._stopped:
                 self.halts = True
@@ -185,21 +197,28 @@ class Search:
         out = list(self._at_once(state, stands, under_way, at_once, begins))
         for owner in mixed & begins.keys():  # it may choose what takes time
             out += self._begun(state, stands, under_way, {owner: begins[owner]})
+        if not ticks and self._calm not in self.graph.marked[state]:
+            ticks = [(BEGINS, state)]  # no time stamp lies ahead
         now = [u for u in under_way if u[2] == 0]
         if not at_once and self._rests(state, under_way, begins):
             self.ends.add(node)
-        out += self._ended(state, stands, under_way, ending, now)
+        out += self._ended(state, stands, under_way, ending, now, ticks)
         if out or node in self.ends:
             return out
         if begins:
             return list(self._begun(state, stands, under_way, begins))
         going = [u for u in under_way if u[2] < FOREVER // 2]
-        if not going:
+        is_waiting = any(element >= 0 for element, _ in ticks)
+        if all(u[0] == CLOCK for u in going) and not is_waiting:
             self._stop(node, stands, under_way)
             return []
+        first = min(u[2] for u in going if is_waiting or u[0] != CLOCK)
+        if not is_waiting and (passed := _whole_seconds(under_way, first)):
+            later = tuple((o, e, ns if o == CLOCK else ns - passed) for o, e, ns in under_way)
+            return [(self._number((state, stands, later)), passed, BEGINS)]
         first = min(u[2] for u in going)
         those = [u for u in going if u[2] <= first + TIE]
-        return list(self._ended(state, stands, under_way, ending, those))
+        return list(self._ended(state, stands, under_way, ending, those, ticks))
 
     def _rests(self, state: int, under_way: UnderWay, begins: Iterable[int]) -> bool:
         """Whether the cycle is over: the supervisor has finished, no arm does anything, and no device a thing that it
@@ -222,7 +241,13 @@ class Search:
             for other, choices in begins.items():
                 if other != owner and not self._enabled(target).issuperset(e for e, _ in choices):
                     self.why = self.why or "overtaken"
-            yield (self._number((target, stands, under_way)), 0, element)
+            after = self._with_wait(under_way, owner, element)
+            yield (self._number((target, stands, after)), 0, element)
+
+    def _with_wait(self, under_way: UnderWay, owner: int, element: int) -> UnderWay:
+        """With the wait of a script after this element."""
+        ns = self.doings.waits(element) if self._kinds[element] is Kind.TOLD else 0
+        return tuple(sorted((*under_way, (owner, WAITS, ns)))) if ns else under_way
 
     def _enabled(self, state: int) -> frozenset[int]:
         if state not in self._told:
@@ -249,14 +274,27 @@ class Search:
         under_way: UnderWay,
         ending: dict[int, list[int]],
         those: Sequence[tuple[int, int, int]],
+        ticks: Sequence[tuple[int, int]],
     ) -> Iterator[Arc]:
-        """One of those ends, when it does; what should have ended before ends then."""
+        """One of those ends, when it does; what should have ended before ends then.
+
+        Args:
+            ticks: what a second of the clock does.
+        """
         for owner, element, ns in those:
             left = tuple(
                 (o, e, more if more >= FOREVER // 2 else max(0, more - ns))
                 for o, e, more in under_way
                 if o != owner
             )
+            if owner == CLOCK:
+                left = tuple(sorted(((CLOCK, TICKS, NS), *left)))
+                for mark, target in ticks:
+                    yield (self._number((target, stands, left)), ns, mark)
+                continue
+            if element == WAITS:
+                yield (self._number((state, stands, left)), ns, BEGINS)
+                continue
             after = stands
             arm = self.doings.arm_of.get(owner)
             if arm is not None:
@@ -267,12 +305,15 @@ class Search:
             if owner not in ending:
                 self.why = self.why or "overtaken"
             for target in ending.get(owner, ()):
-                yield (self._number((target, after, left)), ns, element)
+                later = self._with_wait(left, owner, element)
+                yield (self._number((target, after, later)), ns, element)
 
     def _stop(self, node: int, stands: tuple[Stand, ...], under_way: UnderWay) -> None:
         """Nothing more happens, and the cell is not at its end: what somebody cannot do has stopped it, or nothing."""
         why = ""
         for owner, element, _ in under_way:
+            if element < 0:
+                continue
             arm = self.doings.arm_of.get(owner)
             doing = self.doings.of(element, None if arm is None else stands[arm])
             if doing is not None and doing.fault:
@@ -290,3 +331,11 @@ class Search:
             self.situations.append(s)
             self.successors.append([])
         return found
+
+
+def _whole_seconds(under_way: UnderWay, first: int) -> int:
+    """ns: whole seconds in which nothing comes near its end, when `first` is the time until that."""
+    if not under_way or under_way[0][0] != CLOCK:
+        return 0
+    # The tick before the first end, with what may end as late as its tie, stays to be looked at.
+    return max(0, (first - under_way[0][2] - 2 * TIE) // NS) * NS

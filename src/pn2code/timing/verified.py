@@ -28,7 +28,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.timing.answers import seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
-from pn2code.timing.look import AT_ONCE, PLANNED, Measured, Times, look
+from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
 from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
@@ -189,13 +189,14 @@ class _Judge:
             return open_(f"where it comes, it comes in time, but {others[0]}")
         anyhow = one.anyhow
         slow = Wait(None, "open")
-        if not anyhow.why:
+        if not anyhow.why and anyhow.adds_up:
             slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
         is_kept = slow.ns is not None and slow.ns + TIE <= limit
         value = math.ceil((wait.ns + TIE) / (NS // 1000)) / 1000 if wait.way else 0.0
         config = self.opened.config
         at_once = [AT_ONCE] if config is not None and config.sensors else []
-        assumes = (AT_MOST if is_kept else PLANNED, *at_once, NO_FAULT)
+        clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
+        assumes = (AT_MOST if is_kept else PLANNED, *clock, *at_once, NO_FAULT)
         return Answer(a.about, "yes", value=value, cell=True, assumes=assumes)
 
     def _event(self, one: Measured, f: m.Formula) -> Is | None:

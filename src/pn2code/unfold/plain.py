@@ -45,7 +45,11 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Data, MlException, MlLimit, Value
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.unfold.numbered import Environment, NotNumberedError, Numbers
-from pn2code.unfold.unfold import MAX_PLACES, MAX_TRANSITIONS, check
+from pn2code.unfold.unfold import check
+
+MOST_PLACES = 1_000_000
+MOST_TRANSITIONS = 2_000_000
+"""A transition takes about 1.8 kB and 20 microseconds."""
 
 Token = tuple[int, int]
 """A place, and the number of a value."""
@@ -73,11 +77,16 @@ class PlainNet:
     of_place: tuple[tuple[int, ...], ...]
 
 
+class TooLargeError(Exception):
+    """There are too many places or transitions."""
+
+
 def plain(net: FlatNet) -> PlainNet | None:
     """The net as a place/transition net; None: it is not one of those that can be unfolded in this way.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
+        TooLargeError: it would have more than `MOST_PLACES` or `MOST_TRANSITIONS`.
     """
     d = Diagnostics()
     check(net, d)
@@ -307,7 +316,9 @@ class _Closure:
             return
         c = self.net.places[place].colset
         self.count += 1
-        if self.count > MAX_PLACES or not self.game.colours.legal(c, self.numbers.values[number]):
+        if self.count > MOST_PLACES:
+            raise TooLargeError(f"more than {MOST_PLACES:,} places")
+        if not self.game.colours.legal(c, self.numbers.values[number]):
             raise NotNumberedError
         self.known[place].add(number)
         self.new[place].append(number)
@@ -333,8 +344,8 @@ class _Closure:
             element = self.ready.popleft()
             element.post = _together(element.t.puts, element.found)
             self.elements.append(element)
-            if len(self.elements) > MAX_TRANSITIONS:
-                raise NotNumberedError
+            if len(self.elements) > MOST_TRANSITIONS:
+                raise TooLargeError(f"more than {MOST_TRANSITIONS:,} transitions")
             for token in element.post:
                 self.add(token)
 

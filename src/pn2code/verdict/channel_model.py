@@ -62,6 +62,7 @@ def look(
             most=None if is_small else max(found.nodes, LEAST_STATES),
             options=ExploreOptions(progress=options.progress, interrupted=options.interrupted),
             shown=_shown(control),
+            running_states=0 if control is None or control.found is None else control.found.nodes,
         )
     )
     # Each answer says itself that the time was over.

@@ -36,6 +36,7 @@ def look(
     folder: Path,
     d: Diagnostics,
     asked: m.Properties = m.Properties(),  # noqa: B008 - frozen
+    graph: Path | None = None,
 ) -> Control | None:
     """All checks, and what the explorer says of properties; None after an error.
 
@@ -47,6 +48,7 @@ def look(
         folder: where traces go.
         d: gets the errors.
         asked: the properties.
+        graph: where the graph of the cell is written, if it is small enough; None: nowhere.
     """
     config = opened.config
     assert config is not None, "it has been divided"
@@ -81,6 +83,7 @@ def look(
         bounds=bounds,
         primitives=config.primitives,
         arms=arms,
+        graph=graph,
     )
     own = Diagnostics()
     looked = control.examine(partition, plan, replace(limits, traces=0), own, found)

@@ -20,6 +20,7 @@ from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import (
     Along,
+    Handling,
     Move,
     MoveAxes,
     MoveCircular,
@@ -39,7 +40,7 @@ from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.handling import PartKeeper
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
-from pn2code.tdl.messages import to_si
+from pn2code.tdl.messages import along_to_si, axes_to_si, to_si
 from pn2code.verdict.scene_sensors import blind
 
 _ToPose = MoveJoint | MoveLinear | MoveCircular
@@ -114,7 +115,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             codes.ROBOT_PART,
             f"at the start{where}: {fault}",
             config.locator.origin("parts"),
-            hint="change `at` of the kind of parts, or move what it overlaps",
+            hint="change `at` of the kind of parts, the place of the tool, or move what it overlaps",
         )
         return
     finally:
@@ -242,6 +243,8 @@ def _one_after_the_other(
                 if before is not None:
                     yield origin, before, move
                 before = move
+            case Line(t.Tool(handling=Handling(effect="couples" | "uncouples"))):
+                before = None  # another TCP is where the move before has led
             case Line(t.Assign() | t.Clear() | t.Mark() | t.Tool() | t.WaitTime() | t.Write()):
                 continue
             case Region(body=body):
@@ -283,7 +286,7 @@ def _constant(move: t.Move, constants: _Constants) -> Move:
         return MoveExternal(along)
     if isinstance(move.target, t.Axes):
         angles = [float(cast(float, evaluate(a, constants))) for a in move.target.angles]
-        return MoveAxes(tuple(map(math.radians, angles)), along=along)
+        return MoveAxes(axes_to_si(angles), along=along)
     value = evaluate(move.target, constants)
     if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):
         raise ScriptError("this is no pose")
@@ -315,8 +318,7 @@ def _place_on_the_way(move: t.Move, constants: _Constants) -> Pose | None:
 
 
 def _external(a: t.Along, constants: _Constants) -> Along:
-    number = float(cast(float, evaluate(a.position, constants)))
-    return Along(a.axis, number / 1000.0 if a.is_track else math.radians(number), a.is_track)
+    return along_to_si(a, float(cast(float, evaluate(a.position, constants))))
 
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:

@@ -30,7 +30,6 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
-from pn2code.verify.controller.stated import all_stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.covering import Covering
 from pn2code.verify.exploring.covering import write as write_covering
@@ -164,12 +163,12 @@ def _bindings_of_cell(
 
 
 def are_of_states(asked: Asked) -> bool:
-    """Whether all that is asked of a cell is known where each state of it stands for many markings."""
+    """Whether nothing is asked of the closed net, so that not all of its markings are needed; the cell has its own."""
     if not asked:
         return True
     if asked.partition is None or asked.splits:
         return False
-    return all_stated(asked.properties, asked.partition)
+    return not any(p.of_net for p in asked.properties.properties)
 
 
 @contextmanager

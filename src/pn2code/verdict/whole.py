@@ -54,10 +54,12 @@ class Checks:
     Args:
         controller: the supervisor against its execution scheme (docs/execution.md).
         channel_model: the cell together with its shared files (docs/protocol.md).
+        graph: where the graph of the cell as it runs is written, for whoever goes through it; None: nowhere.
     """
 
     controller: bool = True
     channel_model: bool = True
+    graph: Path | None = None
 
 
 class Durations(Protocol):
@@ -224,7 +226,9 @@ def look(
         options.stage("exploring the cell as its programs run ...")
         has_more = checks.channel_model
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
-        control = controller.look(opened, cell, found, part, options, folder, d, asked.plain)
+        control = controller.look(
+            opened, cell, found, part, options, folder, d, asked.plain, checks.graph
+        )
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: channel_model.Answers = ()
     if cell is not None and checks.channel_model:

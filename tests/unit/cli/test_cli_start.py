@@ -56,6 +56,31 @@ def test_version_and_the_list_of_verbs_load_no_verb(option: str) -> None:
     assert not {f"pn2code.cli.{verb}" for verb in main.VERBS} & modules
 
 
+@pytest.mark.parametrize("words", [["--help"], ["explain", "--help"]])
+def test_help_loads_neither_markdown_nor_what_prints_tracebacks(words: list[str]) -> None:
+    modules = loaded_by(*words)
+    assert "typer.rich_utils" in modules and "rich.panel" in modules
+    assert not {"rich.markdown", "markdown_it", "rich.traceback", "rich.syntax"} & modules
+
+
+def test_what_help_does_not_load_is_the_real_thing_when_it_is_wanted() -> None:
+    program = (
+        "from pn2code.cli import light_help\n"
+        "light_help.load()\n"
+        "from typer.rich_utils import Markdown, Traceback\n"
+        "from rich import markdown, traceback\n"
+        "made = Markdown('*so*', style='bold')\n"
+        "assert type(made) is markdown.Markdown and isinstance(made, Markdown)\n"
+        "try: 1 / 0\n"
+        "except ZeroDivisionError as e: found = Traceback.from_exception(type(e), e, e.__traceback__)\n"
+        "assert type(found) is traceback.Traceback\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize("verb", main.VERBS)
 def test_the_list_says_what_the_help_of_the_verb_begins_with(verb: str) -> None:
     module = importlib.import_module(f"pn2code.cli.{verb}")

@@ -45,8 +45,8 @@ variable = "grip"
 """
 
 
-def compared(folder: Path, *changes: tuple[str, str]) -> RobotReport:
-    cell = Cell(folder, PAGE, ("y out COLOUR",), extra=EXTRA, toml=SENSOR)
+def compared(folder: Path, *changes: tuple[str, str], page: str = PAGE) -> RobotReport:
+    cell = Cell(folder, page, ("y out COLOUR",), extra=EXTRA, toml=SENSOR)
     assert not cell.messages
     text = cell.text
     for before, after in changes:
@@ -60,6 +60,13 @@ def test_a_sensor_says_what_its_own_variable_may_be(tmp_path: Path) -> None:
     found = compared(tmp_path)
     assert found.deviation is None and found.complete
     assert found.transitions == found.all_transitions == 3
+    assert found.idle == ()
+
+
+def test_transitions_that_never_occur_are_named(tmp_path: Path) -> None:
+    found = compared(tmp_path, page=PAGE.replace("trans Lost", "trans Lost guard [1 > 2]"))
+    assert found.deviation is None and found.complete
+    assert found.idle == ("Top.Robot.Lost",)
 
 
 def test_what_a_sensor_says_is_not_made_up(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pn2code.robot.commands import ToolAction
 
 
 def notes() -> RunNotes:
-    config: Any = SimpleNamespace(primitives=None, sensors=(), parts_at_start={})
+    config: Any = SimpleNamespace(primitives=None, sensors=(), parts_at_start={}, tools_at_start={})
     owners = [SimpleNamespace(name="supervisor"), SimpleNamespace(name="belt")]
     partition: Any = SimpleNamespace(transition_owner=(1,), owners=owners)
     made = RunNotes(config, partition)

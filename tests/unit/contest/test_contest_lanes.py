@@ -8,7 +8,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from queue import SimpleQueue
 
+import pytest
+
+from pn2code.contest import diagrams
 from pn2code.contest.engine import Said, Task, ask
+from pn2code.contest.portfolio import space
+from pn2code.contest.tables import Tables
 
 
 def test_a_task_that_is_still_being_made_is_not_waited_for() -> None:
@@ -28,3 +33,19 @@ def test_a_task_that_is_still_being_made_is_not_waited_for() -> None:
     assert is_made.wait(60.0)
     time.sleep(0.05)
     assert said.empty()
+
+
+def test_a_state_space_does_not_wait_for_orders_of_diagrams(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    go_on = threading.Event()
+
+    def late(*_: object) -> list[list[int]]:
+        if not go_on.wait(5.0):
+            raise AssertionError("it was waited for")
+        return []
+
+    monkeypatch.setattr(diagrams, "orders", late)
+    tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
+    assert space(Path("engine"), tables, seconds=0.0, mebibytes=16, only="diagrams") is None
+    go_on.set()

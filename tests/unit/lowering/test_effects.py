@@ -133,3 +133,23 @@ def test_functions_that_are_not_pure() -> None:
     text = dump(net)
     assert "function plain/1(n: int): int context\n" in text
     assert "function next/1(n: int): int impure context\n" in text
+
+
+def test_functions_that_use_one_another_in_a_long_row() -> None:
+    """Deeper than Python's stack."""
+    row = [f"fun f{i} n = f{i - 1} n + 1" for i in range(1, 1200)]
+    net, d = lowered(
+        flat(
+            "\n".join(
+                [
+                    HEAD,
+                    "      fun f0 n = n",
+                    *(f"      {f}" for f in row),
+                    "      trans T",
+                    "        in A : n",
+                    "        out B : f1199 n",
+                ]
+            )
+        )  # fmt: skip
+    )
+    assert net is not None, d.errors

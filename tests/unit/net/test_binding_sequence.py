@@ -1,4 +1,4 @@
-"""Summands of one arc that share variables: accepted where the engine of CPN Tools accepts them (it was asked)."""
+"""Orders in which variables get values: nets are accepted where the engine of CPN Tools accepts them (it was asked)."""
 
 from __future__ import annotations
 
@@ -53,3 +53,56 @@ def test_accepted(case: str) -> None:
 @pytest.mark.parametrize("case", REFUSED)
 def test_refused(case: str) -> None:
     assert said(case) == ["summands-share-variables"]
+
+
+TURN = """
+    net N
+      standard
+      colset E = with e1 | e2 | e3;
+      colset S = product E * E;
+      var u, v, w: E; var n, m: INT; var k: BOOL;
+      fun turn e1 = e2 | turn e2 = e3 | turn e3 = e1;
+      fun both e = (e, turn e);
+      fun many e1 = 1 | many _ = 2;
+      fun some e = many e`e;
+      place A : E = 2`e1 ++ 3`e2
+      place S : S = 1`(e1, e2)
+      place K : BOOL = true
+      place Q : INT
+      place O : E
+      trans X
+"""
+IN_ORDER = (
+    "in A : some u;out O : v | u = turn v", "in A : u;out O : v | u = v",
+    "in A : some u;out O : v | u = v, v = turn e1", "in A : u;out O : v | (u, v) = both u",
+    "in A : u;out Q : n | (u, n) = (u, 3)", "in A : u;out Q : n + m | (n, m) = (3, n), n = 3",
+    "in A : some u;out O : v | u = v andalso true", "in A : some u;in K : k;out O : v | u = (if k then v else e1)",
+    "in A : some u;out O : w | u = turn v, v = turn w", "in A : (many u)`v;out O : u", "in A : (many u)`u;in A : u",
+    "in A : (many u)`(turn u)", "in A : (many u)`u | u = e1", "in S : 1`(u, v) ++ (many u)`(v, u)",
+    "in S : (many u)`(v, turn u)",
+)  # fmt: skip
+IN_CIRCLES = (
+    "out O : v | u = v", "in A : some u;out O : v | u = v, k = true", "in A : some u;in A : some v | u = v",
+    "in A : some u;out O : u | u = turn u", "in A : some u;out O : v | u = turn v, v = turn u",
+    "in A : some u;out O : v | (u, v) = both u", "in A : some u;out O : w | u = v, v = w", "in A : (many u)`u",
+    "in A : (many u)`u;in A : some u", "in A : (many u)`u ++ 1`v", "in S : (many u)`(u, v)",
+    "in A : (many u)`u | u <> e1", "out Q : n | (n, m) = (3, n)",
+)  # fmt: skip
+
+
+def said_of(case: str) -> list[str]:
+    arcs, _, guard = case.partition(" | ")
+    lines = [f"        guard [{guard}]"] * bool(guard) + [f"        {a}" for a in arcs.split(";")]
+    return [e.code for e in diagnose(TURN + "\n".join(lines)).errors]
+
+
+@pytest.mark.parametrize("case", IN_ORDER)
+def test_a_variable_that_nothing_could_bind_has_all_values(case: str) -> None:
+    assert said_of(case) == []
+
+
+@pytest.mark.parametrize("case", IN_CIRCLES)
+def test_variables_that_need_each_other_are_refused(case: str) -> None:
+    of_large_sets = {"unbound-variable"}
+    found = set(said_of(case))
+    assert found in ({"binding-circle"}, of_large_sets), found

@@ -372,7 +372,7 @@ def test_both_arc_has_terms() -> None:
         ("guard [k = f n]\nin A : n\nin T : t @+ k", ["term 0.0", "guard 0 k", "term 1.0"]),
         # small colour sets
         ("guard [s > 1]\nin A : n\nout A : n", ["term 0.0", "all s"]),
-        ("guard [s2 = s]\nin A : n", ["term 0.0", "all s", "guard 0 s2"]),
+        ("guard [s2 = f s]\nin A : n", ["term 0.0", "all s", "guard 0 s2"]),
         ("in A : f s", ["all s"]),
         # the variable that lets others be bound is enumerated first
         ("guard [n = f s, s2 < n]\nout A : n", ["all s", "guard 0 n", "all s2"]),

@@ -19,9 +19,9 @@ net Many
   colset T = int timed;
   var n, m : INT;
   page Top
-    place A : INT = List.tabulate (60, fn i => i)
+    place A : INT = List.tabulate (30, fn i => i)
     place B : INT
-    place C : T = List.tabulate (60, fn i => i)
+    place C : T = List.tabulate (30, fn i => i)
     place D : REAL = [0.0, ~0.0, 1.5]
     place E : T
     trans Move

@@ -374,6 +374,28 @@ def test_booleans_and_anonymous_sorts(tmp_path: Path) -> None:
     assert size(flat(text, tmp_path)) == (1, 1)
 
 
+def test_sorts_without_a_name_are_told_apart(tmp_path: Path) -> None:
+    one, two = '<finiteintrange start="1" end="2"/>', '<finiteintrange start="3" end="4"/>'
+    pair = named("Pair", f"<productsort>{one}{two}</productsort>")
+    marking = number(1, op("tuple", in_range(1, 1, 2), in_range(3, 3, 4)))
+    found = flat(
+        net(
+            place("Pair", "Pair", marking),  # the ids of a place and of a sort are apart as well
+            place("Number", "Single"),
+            transition("move"),
+            arc("Pair", "move", number(1, op("tuple", in_range(1, 1, 2), in_range(3, 3, 4)))),
+            arc(
+                "move",
+                "Number",
+                op("add", number(1, in_range(1, 1, 2)), number(2, in_range(2, 1, 2))),
+            ),
+            declarations=named("Single", one) + pair,
+        ),
+        tmp_path,
+    )
+    assert size(found) == (2, 1)
+
+
 def test_philosophers(tmp_path: Path) -> None:
     found = flat(philosophers(3), tmp_path)
     u = unfold(found, Diagnostics())

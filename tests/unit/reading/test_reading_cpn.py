@@ -377,3 +377,25 @@ def test_labels_of_a_record_may_be_numbers() -> None:
     fields = "".join(f"<recordfield><id>{n}</id><id>INT</id></recordfield>" for n in (1, 2))
     colset = f'<color id="X1"><id>K</id><record>{fields}</record></color></globbox>'
     good(change("</globbox>", colset))
+
+
+def test_text_directly_in_an_element_is_not_read_and_not_passed_over() -> None:
+    """Programs write `<initmark>3</initmark>`: the place is empty, which somebody has to say."""
+    places = (
+        "<place id='a'><initmark>1`3</initmark></place><place id='b'><initmark>2</initmark></place>"
+    )
+    document, d = parse(wrap(places + "<trans id='t'>Go<cond>\n[n > 0]\n</cond></trans>"))
+    assert document is not None
+    assert all(p.initial is None for p in document.pages[0].places)
+    assert [x.code for x in d] == ["cpn-stray-text"] * 3
+    assert [x.message.split(" stands")[0] for x in d] == [
+        "the text `1`3`", "the text `Go`", "the text `[n > 0]`",
+    ]  # fmt: skip
+    assert (d.items[0].hint or "").endswith("<initmark><text>1`3</text></initmark>")
+
+
+@pytest.mark.parametrize(("written", "meant"), [("condition", "cond"), ("delay", "time")])
+def test_an_element_of_another_name_is_told_what_it_is_called(written: str, meant: str) -> None:
+    _, d = parse(wrap(f"<trans id='t'><{written}><text>[false]</text></{written}></trans>"))
+    assert [x.code for x in d] == ["cpn-unknown-element"]
+    assert f"write it as an element `{meant}`" in (d.items[0].hint or "")

@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.legs import Planner
 from pn2code.robot.clamps import closed_on, closes, closing, nearest, on_nothing, shut
-from pn2code.robot.commands import Along, MoveExternal, MoveJoint, Pose
+from pn2code.robot.commands import Along, Handling, MoveExternal, MoveJoint, Pose, ToolAction
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
@@ -108,3 +108,23 @@ def test_over_all_states_it_closes_on_a_part() -> None:
     assert not closed(cell_of("\nmay_be_empty = true", "{ y = -0.9, z = 0.575 }"), 0.0598).fault
     nearly = closed(cell_of(at="{ x = 1.005, z = 0.675 }"), 0.0598)
     assert not nearly.fault and "as much as is permitted" in nearly.doubt
+
+
+def test_a_part_leaves_the_cell_from_an_open_clamp_only() -> None:
+    cell = cell_of()
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("mill")
+    gone = ToolAction("eject", 1.0, Handling("removes", "blank", "inVice"))
+
+    def after(*gaps: float, owner: str = "mill") -> Any:
+        stand = home if owner == "mill" else None
+        return doing.of(owner, (*map(grasp, gaps), gone), stand, doing.start, (home,))
+
+    closed_on_it = after(0.0598)
+    assert closed_on_it.is_part and closed_on_it.fault == (
+        "`mill` removes `blank.1` out of `mill/vice`, which holds it: its gap is 59.8 mm, and it lets go at 120.0 mm"
+    )
+    opened = after(0.0598, 0.12)
+    assert not opened.fault and not opened.doubt and not opened.after.parts.present
+    other = after(owner="feeder")
+    assert not other.fault and "whether `mill/vice` has let go then is not followed" in other.doubt

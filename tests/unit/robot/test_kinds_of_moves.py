@@ -29,7 +29,7 @@ BENCH = Pose(1.0, 2.0, 0.5, 0.1, -0.2, 0.7)
 def executor() -> RobotExecutor:
     """Robot 1, away from HOME."""
     made = RobotExecutor(CELL.robot("robot1"), CELL.motion, {"bench": BENCH})
-    made.stand(START, made.robot.kinematics.forward(START))
+    made.stand(START, made.robot.kinematics.forward(START), "")
     return made
 
 

@@ -38,6 +38,11 @@ PUBLISHED = {
         [0, 10, -20, 0, -60, 0],
     ),
 }
+# Where payloads can be read: in the names that makers give arms, UR5e: its Hardware Manual (stopping distances with the
+# maximum payload), LR Mate 200iD: FANUC's product page. Of cobra_s600, and of moments, no published source was found.
+PAYLOADS = {
+    "irb6700_200_260": 200, "gp25": 25, "iiwa14_r820": 14, "lrmate200id": 7, "ur5e": 5, "ur10e": 12.5,
+}  # fmt: skip
 NEW = [*PUBLISHED]
 
 
@@ -85,13 +90,30 @@ def test_the_arm_is_that_of_the_data_sheet(name: str) -> None:
     assert k.arm.velocity * factor == pytest.approx(speeds)
 
 
+@pytest.mark.parametrize("name", PAYLOADS)
+def test_payloads_are_the_published_ones_and_the_file_says_where_they_are(name: str) -> None:
+    d = Diagnostics()
+    arm = find_arm(name, Path(), HERE, d)
+    assert arm is not None and arm.urdf.rating is not None, list(d)
+    assert arm.urdf.rating.payload == PAYLOADS[name]
+    assert "<!-- Held against: " in (MODELS / f"{name}.urdf").read_text(encoding="utf-8")
+
+
+def test_axis_3_of_the_lr_mate_has_the_published_span() -> None:
+    """-2.450966 to 4.886922 rad: FANUC's manual B-83494EN/03, as in ROS-Industrial's fanuc_lrmate200id_support."""
+    k = kinematics("lrmate200id")
+    (coupled,) = k.arm.urdf.couplings
+    assert coupled.upper - coupled.lower == pytest.approx(4.886922 + 2.450966, abs=0.01)
+
+
 def test_reaches_are_the_published_ones() -> None:
     seven = kinematics("iiwa14_r820").joint_frames(np.zeros(7))
     heights = [seven[i][2, 3] for i in (1, 3, 5, 7)]
     assert np.diff([0.0, *heights]) == pytest.approx([0.36, 0.42, 0.4, 0.126])
     assert heights[2] - heights[0] == pytest.approx(0.82)
     scara = kinematics("cobra_s600").forward(np.zeros(4))
-    assert scara[:2, 3] == pytest.approx([0.6, 0.0])
+    # The flange is 387 to 177 mm above the foot.
+    assert scara[:3, 3] == pytest.approx([0.6, 0.0, 0.387])
     k = kinematics("lrmate200id")
     low, high = k.arm.lower, k.arm.upper
     x, y = np.meshgrid(np.linspace(low[1], high[1], 90), np.linspace(low[2], high[2], 90))
@@ -217,7 +239,7 @@ WAYS = {
         down(0.5, -0.2, 0.4, 2.4),
         down(0.6, 0.0, 0.5, 2.0),
     ),
-    "cobra_s600": (down(0.4, 0.2, 0.3), down(0.45, -0.2, 0.25, 0.4), down(0.5, 0.0, 0.3)),
+    "cobra_s600": (down(0.4, 0.2, 0.5), down(0.45, -0.2, 0.45, 0.4), down(0.5, 0.0, 0.5)),
     "gantry_3000": (down(0.4, 0.2, 1.2), down(2.0, -0.2, 0.9, 0.4), down(1.5, 0.6, 1.2)),
     "lrmate200id": (down(0.4, 0.2, 0.4), down(0.45, -0.2, 0.45, 0.4), down(0.5, 0.0, 0.4)),
 }
@@ -309,7 +331,7 @@ def test_on_a_rail_and_a_plate_the_arm_angle_goes_along() -> None:
 
 def test_an_arm_angle_where_there_is_none() -> None:
     with pytest.raises(MotionFault, match="it has no arm angle"):
-        executor("cobra_s600").begin(MoveJoint(down(0.4, 0.2, 0.3), arm_angle=0.1), 0.0)
+        executor("cobra_s600").begin(MoveJoint(down(0.4, 0.2, 0.5), arm_angle=0.1), 0.0)
 
 
 @pytest.mark.parametrize("name", ["cobra_s600", "gantry_3000"])

@@ -583,6 +583,12 @@ REFUSED = {
         (),
         "error[robot-not-sequential] the places that tell where robot `robot1` is hold several tokens initially",
     ),
+    "computed": (
+        "place A = if 1 > 0 then 1`() else empty\nplace B\ntrans T\n  in A\n  out B",
+        (),
+        "error[robot-not-sequential] the initial marking of place `A`, which tells where robot `robot1` is, is "
+        "computed: how many tokens it has is not known before the run",
+    ),
     "lost": (
         "place A = 1\nplace B : INT = 1`1\ntrans T\n  in A\n  both B : n\n  out x : n",
         ("x out INT",),

@@ -135,6 +135,23 @@ def test_nobody_is_waited_for_beyond_what_was_said(held: Held) -> None:
     assert "not open" in held.wish("answer", number=1, value="2")["refused"][1]
 
 
+def test_what_is_seen_is_looked_at_again_when_nobody_answered(held: Held) -> None:
+    """Meanwhile a part may have come, or gone."""
+    assert held.ask() is None
+    held.person.now = 15.0
+    told: list[Said] = []
+    engine = SimpleNamespace(
+        hand=held.hand,
+        sensors=SimpleNamespace(seen={"drill": ("infeed", "box")}),
+        _sensor_says=lambda _robot, _request: 2,
+        _told=lambda _robot, _request, said: told.append(said),
+        _heed_request=lambda _robot, _request: None,
+    )
+    robot = SimpleNamespace(name="robot1", asking=SimpleNamespace(sensor="drill"))
+    assert RealtimeEngine._robot_turn(engine, robot)  # type: ignore[arg-type]
+    assert told == [Said(2, "", "sensor drill: 2 is seen now, as nobody answered within 15 s")]
+
+
 def test_nobody_is_waited_for_who_is_not_there(held: Held) -> None:
     held.person.here = 0
     assert held.ask() == Said(1)

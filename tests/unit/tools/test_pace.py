@@ -36,6 +36,11 @@ TESTS = [
 ]
 
 
+PYTEST = (sys.executable, "-m", "pytest", "-p", "xdist")
+PLAIN = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+"""Of the environment: other plugins, which take longer to import than these runs, have no part in them."""
+
+
 def names(numbers: list[int]) -> list[str]:
     return [TESTS[n].test.rpartition("/")[2] for n in numbers]
 
@@ -150,8 +155,8 @@ def test_a_whole_run_that_costs_too_much_fails(
     tests = str(Path(__file__).parents[2])
     kept = {k: v for k, v in os.environ.items() if k != "PN2CODE_THOROUGH"}
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "--estimate", *asked], cwd=tmp_path, capture_output=True, text=True,
-        check=False, env={**kept, "PYTHONPATH": tests + os.pathsep + os.environ.get("PYTHONPATH", "")},
+        [*PYTEST, "--estimate", *asked], cwd=tmp_path, capture_output=True, text=True,
+        check=False, env={**kept, **PLAIN, "PYTHONPATH": tests + os.pathsep + os.environ.get("PYTHONPATH", "")},
     )  # fmt: skip
     assert done.returncode == code, done.stdout + done.stderr
     assert ("times the processor time" in done.stdout) == (code == 1)
@@ -175,8 +180,8 @@ def test_each_worker_begins_with_other_files(tmp_path: Path) -> None:
     tests = str(Path(__file__).parents[2])
     path = tests + os.pathsep + os.environ.get("PYTHONPATH", "")
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-n", "2", "--continue-on-collection-errors"], cwd=tmp_path,
-        capture_output=True, text=True, check=False, env={**os.environ, "PYTHONPATH": path},
+        [*PYTEST, "-n", "2", "--continue-on-collection-errors"], cwd=tmp_path,
+        capture_output=True, text=True, check=False, env={**os.environ, **PLAIN, "PYTHONPATH": path},
     )  # fmt: skip
     assert "KeyError: 'wrong'" in done.stdout and "4 passed, 1 skipped" in done.stdout, done.stdout
     assert [(tmp_path / f"gw{n}").read_text() for n in (0, 1)] == ["acbd", "bdac"]

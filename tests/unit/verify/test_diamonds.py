@@ -75,7 +75,26 @@ def test_what_commutes(text: str) -> None:
     ],
 )
 def test_what_is_to_be_asked(text: str) -> None:
-    assert pairs(text) == ((0, 1),)
+    assert [(x.first, x.second) for x in pairs(text) or ()] == [(0, 1)]
+
+
+@pytest.mark.parametrize(
+    ("text", "enough"),
+    [
+        (two("in A : (); out Out : ()", "in A : (); in B : ()"), {"A": 2}),
+        (two("in A : 2`()", "both A : (); in B : (); in Free : ()"), {"A": 3}),
+        (two("in A : (); in B : ()", "in B : (); in A : (); out Out : ()"), {"A": 2, "B": 2}),
+        (two("in A : (); in Free : ()", "in A : (); in Free : ()"), {"A": 2, "Free": 2}),
+        (two("in A : 5`()", "in A : 4`()"), {}),  # more than is counted
+        (two("in A : (); inhibit B : ()", "in A : (); in B : ()"), {}),  # B has to be empty
+        (two("in Sort : 1; in A : ()", "in Sort : 1; in A : ()"), {}),  # tokens of two colours
+    ],
+)
+def test_of_what_there_may_be_enough_for_both(text: str, enough: dict[str, int]) -> None:
+    net = flat(HEAD + text)
+    (pair,) = diamonds.undecided(net, {}, range(2), ()) or ()
+    assert {net.places[p].short: n for p, n in pair.enough} == enough
+    assert set(diamonds.demanded((pair,)).values()) == set(enough.values())
 
 
 @pytest.mark.parametrize(
@@ -149,8 +168,12 @@ def is_wrong(text: str) -> bool | None:
     enabled: dict[int, set[int]] = {}
     for arc in space.arcs:
         enabled.setdefault(arc.source, set()).add(arc.element.transition)
-    if any({t, u} <= own for own in enabled.values() for t, u in found):
-        return None
+    for node, own in enabled.items():
+        held = space.nodes[node].places
+        for pair in found:
+            is_enough = bool(pair.enough) and all(len(held[p]) >= n for p, n in pair.enough)
+            if {pair.first, pair.second} <= own and not is_enough:
+                return None
     return not has_one_end_from_each(space)
 
 
@@ -164,6 +187,7 @@ def test_random_nets_have_one_end() -> None:
     ("wrong", "text"),
     [
         ("_clash", two("in Free : (); out Out : ()", "in Free : (); in B : ()")),
+        ("_enough", two("in Free : (); out Out : ()", "in Free : (); in B : ()")),
         ("_disturbs", two("in Free : (); inhibit Out : ()", "in B : (); out Out : ()")),
         (
             "commute",
@@ -178,5 +202,5 @@ def test_a_condition_that_is_missing_is_noticed(
     monkeypatch: pytest.MonkeyPatch, wrong: str, text: str
 ) -> None:
     assert is_wrong(HEAD + text) is None
-    monkeypatch.setattr(diamonds, wrong, lambda *_: wrong == "commute")
+    monkeypatch.setattr(diamonds, wrong, lambda *_: {"commute": True, "_enough": 1}.get(wrong))
     assert is_wrong(HEAD + text) is True

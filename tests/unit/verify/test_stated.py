@@ -14,7 +14,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.properties.questions import Questions
 from pn2code.verdict.asked import gather
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify.controller.stated import Stated, stated
+from pn2code.verify.controller.stated import Stated, stated, ways
 
 NET = """net cell
   standard
@@ -133,6 +133,36 @@ def test_what_says_something_of_paths_or_programs_is_no_condition_on_states(
     cell: tuple[OpenNet, Partition], text: str
 ) -> None:
     assert made(cell, text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "is_own"),
+    [
+        ("ltl (tokens(Busy) = 0) U (tokens(Busy) > 0)", True),
+        ("ltl G (tokens(Feeder) = 0 -> F tokens(Busy) = 0)", True),
+        ("ltl F tokens(Got) = 1", False),  # a device may put it after the end
+        ("ltl F tokens(ask) = 1", False),  # and take this
+        ("ltl G (tokens(Busy) = 1 -> X tokens(Busy) = 2)", False),
+        ("ltl F fires(Send)", False),
+        ("ltl F dead", False),
+        ("ltl F tokens(Busy) = 1 assuming weak Send", False),
+        ("ctl A[(tokens(Busy) = 0) U (tokens(Busy) > 0)]", False),
+    ],
+)
+def test_formulas_about_places_of_the_supervisor(
+    cell: tuple[OpenNet, Partition], text: str, is_own: bool
+) -> None:
+    opened, partition = cell
+    d = Diagnostics()
+    asked = gather(opened, [text], None, d, found=False).plain
+    assert not d.has_errors, [e.message for e in d.errors]
+    found = [x for x in ways(asked.properties[0], OVER, asked, partition) if x.is_of_paths]
+    assert bool(found) is is_own
+    for x in found:
+        assert x.places == x.exact != frozenset()
+        assert x.holds({"answer": "no"}) and not x.holds(
+            {"answer": "yes"}
+        )  # of a path that violates it
 
 
 def test_more_is_asked_of_states_where_less_is_known_of_them(

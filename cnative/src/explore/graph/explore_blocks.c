@@ -216,6 +216,7 @@ bool ex_expand(ex_expander_t *x, ex_block_t *block, uint32_t first, uint32_t cou
         x->node = (uint16_t)i;
         block->arcs[i] = 0U;
         block->is_cut[i] = 0U;
+        block->is_open[i] = 0U;
         const bool is_there = ex_store_fetch(store, slot[first + i], &key);
         const ex_found_t found =
             !is_there ? EX_FAILED : (is_word ? make_words(x, &key) : ex_arcs(x->worker, &key, gather, x));
@@ -226,6 +227,7 @@ bool ex_expand(ex_expander_t *x, ex_block_t *block, uint32_t first, uint32_t cou
                 return false;
             }
             block->is_cut[i] = 1U;
+            block->is_open[i] = 1U;
         }
         if (((x->used >= (uint64_t)GATHERED) || ((i + 1U) == count)) && !look_up(x, block)) {
             return false;

@@ -23,7 +23,8 @@ typedef struct ex_block {
     uint32_t arcs[EX_BLOCK_NODES]; /* of each node */
     uint8_t is_dead[EX_BLOCK_NODES];
     uint8_t is_late[EX_BLOCK_NODES];
-    uint8_t is_cut[EX_BLOCK_NODES]; /* it has arcs that are not there */
+    uint8_t is_cut[EX_BLOCK_NODES];  /* it has arcs that are not there */
+    uint8_t is_open[EX_BLOCK_NODES]; /* it was not found out whether it has any */
 } ex_block_t;
 
 /* What a thread makes blocks with. */

@@ -88,6 +88,9 @@ static void number_block(ex_graph_t *graph, const ex_block_t *block, uint32_t fi
         if ((graph->cut != NULL) && (block->is_cut[i] != 0U)) {
             EX_SET_BIT(graph->cut, node);
         }
+        if ((graph->open != NULL) && (block->is_open[i] != 0U)) {
+            EX_SET_BIT(graph->open, node);
+        }
         for (uint32_t k = 0U; k < block->arcs[i]; k++) {
             const uint64_t target = (*found & ~EX_NUMBERED) >> EX_LABEL_BITS;
             uint32_t number = (uint32_t)target;
@@ -205,9 +208,10 @@ bool ex_graph(ex_run_t *run)
     graph->row = ex_alloc(&run->memory, (nodes + 1U) * sizeof *graph->row);
     graph->dead = ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->dead);
     graph->cut = is_whole ? NULL : ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->cut);
+    graph->open = is_whole ? NULL : ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->open);
     graph->late = pn_net.timed ? ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
-                   && (graph->dead != NULL) && (is_whole || (graph->cut != NULL))
+                   && (graph->dead != NULL) && (is_whole || ((graph->cut != NULL) && (graph->open != NULL)))
                    && ((graph->late != NULL) || !pn_net.timed)
                    && reserve_arcs(run, graph, is_whole ? run->arcs : nodes);
     ex_phase(run, "graph");
@@ -331,7 +335,8 @@ void ex_graph_json(ex_run_t *run, FILE *out)
 
 void ex_graph_write(ex_run_t *run)
 {
-    if ((run->options.write_graph != NULL) && (run->graph->nodes <= run->options.write_limit)
+    if ((run->options.write_graph != NULL) && (run->graph->is_whole || run->options.writes_part)
+        && (run->graph->nodes <= run->options.write_limit)
         && !ex_write_graph(run, run->graph, run->options.write_graph)) {
         (void)fprintf(stderr, "explore: cannot write `%s`\n", run->options.write_graph);
     }

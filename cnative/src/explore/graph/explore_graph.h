@@ -27,6 +27,7 @@ typedef struct ex_graph {
     uint64_t *late; /* a bit for each node at whose time nothing is enabled, so that its arcs come later; NULL: the net
                        is untimed */
     uint64_t *cut;  /* of a part: a bit for each node of which arcs are missing; NULL: of none */
+    uint64_t *open; /* the same, of which it is not known whether they have any */
     uint64_t node_room; /* nodes that there is memory for */
     bool is_whole;      /* all successors of all nodes are there */
     bool is_reduced;    /* it lacks states or arcs: components and properties are not computed */

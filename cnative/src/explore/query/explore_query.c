@@ -246,16 +246,16 @@ static bool find_leaves(ex_queries_t *queries)
     return is_fine;
 }
 
-/* The same set, and the nodes of a part of which arcs are missing. NULL: no memory. */
-static uint64_t *with_cut(const ex_queries_t *queries, uint64_t *set)
+/* The same set, and some nodes of a part (NULL: of none). NULL: no memory. */
+static uint64_t *with_more(const ex_queries_t *queries, uint64_t *set, const uint64_t *more)
 {
     const ex_graph_t *const graph = queries->run->graph;
-    if ((set == NULL) || (graph->cut == NULL)) {
+    if ((set == NULL) || (more == NULL)) {
         return set;
     }
     uint64_t *const may = ex_set(queries);
     for (uint64_t i = 0U; (may != NULL) && (i < ex_set_words(graph)); i++) {
-        may[i] = set[i] | graph->cut[i];
+        may[i] = set[i] | more[i];
     }
     return may;
 }
@@ -289,7 +289,7 @@ static bool find_enabled(ex_queries_t *queries)
     for (uint32_t i = 0U; i < queries->items; i++) {
         ex_item_t *const item = &queries->item[i];
         if (item->is_needed && (item->kind == EX_ITEM_ENABLED)) {
-            item->may = is_fine ? with_cut(queries, item->set) : NULL;
+            item->may = is_fine ? with_more(queries, item->set, graph->cut) : NULL;
             item->set = (item->may != NULL) ? item->set : NULL;
         }
     }
@@ -297,20 +297,11 @@ static bool find_enabled(ex_queries_t *queries)
     return is_fine;
 }
 
-/* Of a part, a node all of whose arcs are missing may be dead, or not. */
+/* Of a part, a node may be dead of which it is not known whether it has arcs; one whose arcs lead out of the part is not. */
 static bool may_be_dead(const ex_queries_t *queries, ex_item_t *item)
 {
-    const ex_graph_t *const graph = queries->run->graph;
-    if (graph->cut == NULL) {
-        return true;
-    }
-    item->may = with_cut(queries, item->set);
+    item->may = with_more(queries, item->set, queries->run->graph->open);
     item->set = (item->may != NULL) ? item->set : NULL;
-    for (uint32_t node = 0U; (item->may != NULL) && (node < graph->nodes); node++) {
-        if (graph->row[node] != graph->row[node + 1U]) {
-            item->may[node >> 6U] &= ~((uint64_t)1U << (node & 63U));
-        }
-    }
     return item->may != NULL;
 }
 
@@ -589,12 +580,13 @@ static void answer_in_part(ex_queries_t *queries, ex_question_t *question)
     }
 }
 
-/* After an exploration that came to a limit: whether the first nodes have a run that violates what is asked of runs. */
+/* After an exploration that came to a limit: whether the first nodes have a run that violates what is asked of runs.
+ * The graph of these nodes may be wanted in any case. */
 static void answer_by_part(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;
     const int why = atomic_load(&run->why);
-    bool is_asked = false;
+    bool is_asked = run->options.writes_part;
     for (uint32_t i = 0U; i < queries->questions; i++) {
         is_asked = is_asked || is_of_part(queries, &queries->question[i]);
     }

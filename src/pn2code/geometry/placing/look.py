@@ -231,7 +231,7 @@ class _Placing:
         Where it goes is its own affair. With no parts, and no sensors that see, an arm comes to such a move in each
         placing in which those that are placed can do all of theirs.
         """
-        if self.cell.parts or found.sees:
+        if self.cell.kinds or found.sees:
             return ""
         for leg in found.doing.planner.legs:
             if leg.fault is not None and leg.robot not in self.robots:

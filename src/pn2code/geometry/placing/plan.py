@@ -78,8 +78,8 @@ class Plan:
     def walk(self, robot: CellRobot, cell: RobotCell) -> Walk:
         """Plans everything from where the robot stands."""
         executor = RobotExecutor(robot, cell.motion, cell.frames)
-        home = (executor.q, executor.T_base_tcp)
-        ends: list[tuple[Array, Array]] = []
+        home = (executor.q, executor.T_base_tcp, executor.tool)
+        ends: list[tuple[Array, Array, str]] = []
         rows, loose, counts = [np.array(home[0])[None]], [True], [False]
         seconds = 0.0
         for before, command in self.steps:
@@ -90,7 +90,7 @@ class Plan:
                 q = np.concatenate(rows)
                 return Walk(q, np.array(loose), np.array(counts), seconds, len(ends), fault)
             executor.finish()
-            ends.append((np.array(executor.q), np.array(executor.T_base_tcp)))
+            ends.append((np.array(executor.q), np.array(executor.T_base_tcp), executor.tool))
             path = motion.trajectory
             seconds += path.duration
             if not isinstance(path, Still):

@@ -498,12 +498,23 @@ class Program:
     def _reaches(
         self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
     ) -> bool:
-        """Whether a property holds for a part of an expression, or of a top-level function that it uses."""
+        """Whether a property holds for a part of an expression, or of a top-level function that it uses.
+
+        Functions may call each other: nothing is noted of one before all that it uses has been looked at.
+        """
         if id(e) in known:
             return known[id(e)]
-        known[id(e)] = False  # while we look: recursion adds nothing
-        known[id(e)] = any(has(n) or self._callee_reaches(n, has, known) for n in _nodes(e))
-        return known[id(e)]
+        seen, todo = {id(e)}, [e]
+        while todo:
+            for node in _nodes(todo.pop()):
+                used = self._used(node)
+                if has(node) or any(known.get(id(f), False) for f in used):
+                    known[id(e)] = True
+                    return True
+                todo += [f for f in used if id(f) not in known and id(f) not in seen]
+                seen.update(map(id, used))
+        known.update(dict.fromkeys(seen, False))
+        return False
 
     def prelude_function(self, builtin: str) -> tuple[prelude.File, Symbol] | None:
         """The function of the prelude that a built-in function is; its file is adopted."""
@@ -514,20 +525,19 @@ class Program:
             self.adopt(found[0])
         return found
 
-    def _callee_reaches(
-        self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
-    ) -> bool:
+    def _used(self, e: core.Exp) -> tuple[core.Exp, ...]:
+        """What is computed where a node names something of the declarations or of the prelude."""
         if isinstance(e, core.Builtin):
             found = self.prelude_function(e.name)
             group = self._groups.get(found[1].uid) if found is not None else None
         elif isinstance(e, core.Var):
             primitive = self._primitives.get(e.symbol.uid)
             if primitive is not None:
-                return has(primitive)
+                return (primitive,)
             group = self._groups.get(e.symbol.uid)
         else:
             group = None
-        return group is not None and any(self._reaches(f, has, known) for _, f in group.bindings)
+        return () if group is None else tuple(f for _, f in group.bindings)
 
     def _is_impure_value(self, value: Binding) -> bool:
         from pn2code.lowering.expressions.values import BuiltinFunction, Closure, Partial
@@ -572,6 +582,8 @@ def _is_builtin(e: core.Exp, name: str) -> bool:
 
 
 def _nodes(e: core.Exp) -> Iterator[core.Exp]:
-    yield e
-    for child in children(e):
-        yield from _nodes(child)
+    todo = [e]
+    while todo:
+        node = todo.pop()
+        yield node
+        todo += children(node)

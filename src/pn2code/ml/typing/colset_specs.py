@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import frozen
@@ -40,7 +40,7 @@ from pn2code.ml.typing.environment import (
     TypeCon,
     UnitEntry,
 )
-from pn2code.ml.typing.inference import from_type
+from pn2code.ml.typing.inference import MAX_TYPE_NODES, from_type
 
 _BRACKETS = re.compile(r"\s*\[.*\]\s*", re.DOTALL)
 _BARE_FN = re.compile(r"\s*fn\b")
@@ -100,6 +100,7 @@ class Colsets:
         self._expression = expression
         self._fold = fold
         self._datatypes: list[core.DatatypeDec] = []
+        self._parts: dict[str, int] = {}
 
     def declare(self, spec: ColsetSpec) -> tuple[Colset | None, list[core.DatatypeDec]]:
         """The colour set, None if it was reported, and the datatypes it brings."""
@@ -114,6 +115,17 @@ class Colsets:
             names = (*made, *(label for label, _ in spec.fields if spec.kind == "union"))
             for name in names:
                 scope.values[name] = BrokenEntry()
+            return None, []
+        parts = self._parts[spec.name] = _parts(colset, self._parts)
+        if parts > MAX_TYPE_NODES:
+            self._ctx.colsets[spec.name] = None
+            scope.types[spec.name] = BrokenType()
+            self._error(
+                codes.TYPE_TOO_LARGE,
+                f"a value of colour set `{spec.name}` has {parts:,} parts, more than the {MAX_TYPE_NODES:,} allowed",
+                spec,
+                hint="products of products multiply: is one of its components meant to be a list?",
+            )
             return None, []
         if self._datatypes:
             scope.types[spec.name] = TypeCon(self._datatypes[0].name, 0)
@@ -495,3 +507,14 @@ class Colsets:
 
 def _shown(value: Constant) -> str:
     return f'`"{value}"`' if isinstance(value, str) else f"`{value}`".replace("-", "~")
+
+
+def _parts(colset: Colset, known: Mapping[str, int]) -> int:
+    """How many parts its type has, written out: those of a union are a type of their own.
+
+    Args:
+        known: of the colour sets that were declared before.
+    """
+    if colset.kind is Kind.UNION:
+        return 1
+    return 1 + sum(known[c.name] for c in colset.components if c is not None)

@@ -18,6 +18,7 @@ from pn2code.robot.models.urdf_text import (
     box,
     cylinder,
     fixed,
+    held,
     link_text,
     materials,
     origin,
@@ -127,20 +128,24 @@ CHAINS = (
         (0, 0, 0.045),
         (0, 0, 0),
         "link_1+link_3 link_3+link_5 link_5+link_7 link_5+flange link_6+flange",
-        '  <pn2code payload="14"/>\n',
+        held(
+            "speeds by KUKA, Spez LBR iiwa (axis data of LBR iiwa 14 R820), as Drake quotes it; payload is "
+            "in the name that KUKA gives the arm"
+        )
+        + '  <pn2code payload="14"/>\n',
     ),
     ChainSpec(
         "cobra_s600",
         (
-            Step((0, 0, 0.3), "0 0 1", (-105, 105), 386),
+            Step((0, 0, 0.342), "0 0 1", (-105, 105), 386),
             Step((0.325, 0, 0), "0 0 1", (-150, 150), 720),
-            Step((0.275, 0, 0), "0 0 -1", (0, 0.21), 1.1, "prismatic"),
+            Step((0.275, 0, 0.145), "0 0 -1", (0, 0.21), 1.1, "prismatic"),
             Step((0, 0, 0), "0 0 1", (-360, 360), 1200),
         ),
         (
             (
                 Block("grey", (-0.1, -0.09, 0.0), (0.09, 0.09, 0.02)),
-                Rod("grey", "z", 0.0, 0.28, 0.085),
+                Rod("grey", "z", 0.0, 0.32, 0.085),
             ),
             (
                 Rod("silver", "z", -0.01, 0.06, 0.085),
@@ -150,7 +155,7 @@ CHAINS = (
             (
                 Rod("silver", "z", 0.06, 0.2, 0.06),
                 Block("silver", (0.0, -0.055, 0.06), (0.275, 0.055, 0.16)),
-                Rod("silver", "z", 0.0, 0.2, 0.055, (0.275, 0, 0)),
+                Rod("silver", "z", 0.06, 0.2, 0.055, (0.275, 0, 0)),
             ),
             (Rod("steel", "z", -0.08, 0.2, 0.01),),
             (Rod("steel", "z", -0.1, -0.08, 0.025),),
@@ -158,7 +163,11 @@ CHAINS = (
         (0, 0, -0.1),
         (180, 0, 0),
         "link_2+link_4 link_2+flange link_3+flange",
-        '  <pn2code payload="5.5"/>\n',
+        held(
+            "axes, heights, limits and speeds by ROS-Industrial, adept_cobra_s600_support; payload by "
+            "nothing"
+        )
+        + '  <pn2code payload="5.5"/>\n',
     ),
     ChainSpec(
         "gantry_3000",

@@ -16,6 +16,7 @@ from pn2code.robot.models.urdf_text import (
     Shapes,
     cylinder,
     fixed,
+    held,
     link_text,
     materials,
     origin,
@@ -31,7 +32,7 @@ class CobotSpec:
         shoulder: how far the upper arm stands beside the column; forearm: how far the forearm does.
         radii: of the housings at the shoulder, the elbow and the wrist.
         speeds: of the axes.
-        payload: kg.
+        payload: kg; source: where that can be read.
     """
 
     name: str
@@ -46,16 +47,19 @@ class CobotSpec:
     radii: tuple[float, float, float]
     speeds: tuple[float, ...]
     payload: float
+    source: str
 
 
 COBOTS = (
     CobotSpec(
         "ur10e", 0.1807, 0.6127, 0.57155, 0.17415, 0.11985, 0.11655, 0.176, 0.039,
         (0.085, 0.068, 0.052), (120, 120, 180, 180, 180, 180), 12.5,
+        "payload by Universal Robots (10 kg with full acceleration)",
     ),
     CobotSpec(
         "ur5e", 0.1625, 0.425, 0.3922, 0.1333, 0.0997, 0.0996, 0.138, 0.007,
         (0.068, 0.056, 0.046), (180, 180, 180, 180, 180, 180), 5.0,
+        "payload by Universal Robots, Hardware Manual UR5e (stopping distances)",
     ),
 )  # fmt: skip
 _LIMITS = (360, 360, 165, 360, 360, 360)
@@ -165,7 +169,7 @@ def _cobot(spec: CobotSpec, out: dict[str, str]) -> None:
     used = sorted({c for shapes, _ in contents.values() for c in shapes})
     # Never tested against each other: neighbours, and what meets at the shoulder and in the wrist.
     ignore = '  <pn2code ignore="base_link+link_2 link_3+link_5 link_4+link_6 link_4+flange"/>\n'
-    data = f'  <pn2code payload="{spec.payload:g}"/>\n'
+    data = held(spec.source) + f'  <pn2code payload="{spec.payload:g}"/>\n'
     out[f"{spec.name}.urdf"] = (
         f'{HEAD}<robot name="{spec.name}">\n{materials(used)}'
         f"{''.join(links)}{''.join(joints)}{flange}{ignore}{data}</robot>\n"

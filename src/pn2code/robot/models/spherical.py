@@ -18,6 +18,7 @@ from pn2code.robot.models.urdf_text import (
     Shapes,
     cylinder,
     fixed,
+    held,
     link_text,
     materials,
     origin,
@@ -78,7 +79,7 @@ SPHERICAL = (
         (110, 110, 110, 190, 150, 210),
         (0.25, 0.18, 0.11),
         "orange",
-        _payload(200),
+        held("payload and reach are in the name that ABB gives the variant") + _payload(200),
     ),
     SphericalSpec(
         "gp25",
@@ -90,7 +91,8 @@ SPHERICAL = (
         (210, 210, 265, 420, 420, 885),
         (0.15, 0.12, 0.06),
         "blue",
-        _payload(25, "52 52 32"),
+        held("payload is in the name that Yaskawa gives the arm; moments by nothing")
+        + _payload(25, "52 52 32"),
     ),
     SphericalSpec(
         "tx2_90",
@@ -113,7 +115,11 @@ SPHERICAL = (
         (450, 380, 520, 550, 545, 1000),
         (0.075, 0.06, 0.035),
         "yellow",
-        _payload(7, "16.6 16.6 9.4")
+        held(
+            "limits and speeds by FANUC, B-83494EN/03, as in fanuc_lrmate200id_support (axis 3: its span "
+            "of 420 degrees); payload by FANUC's product page; moments by nothing"
+        )
+        + _payload(7, "16.6 16.6 9.4")
         # The maker counts axis 3 from the horizontal: where axis 2 moves alone, the forearm keeps its direction.
         + _coupled(-215, 205),
     ),

@@ -85,3 +85,8 @@ def fixed(name: str, parent: str, child: str, origin: str = "") -> str:
 
 
 HEAD = '<?xml version="1.0"?>\n<!-- Made by pn2code.robot.models.build; change that. -->\n'
+
+
+def held(where: str) -> str:
+    """A comment that says against what the numbers of an arm were held."""
+    return f"  <!-- Held against: {where}. -->\n"

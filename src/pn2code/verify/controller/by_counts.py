@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 from pn2code.base.frozen import frozen
@@ -44,7 +45,7 @@ from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.left_over import nothing_left
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
-from pn2code.verify.controller.stated import Stated, stated
+from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -71,6 +72,7 @@ class Seen:
         said: what follows of the questions about the cell, in the order of `control.of_cell`.
         asked: the same of those about its orders.
         answers: what is said of properties, in their order.
+        others: the numbers of properties that are about the closed net alone.
         is_quiet: whether nothing is left for the supervisor where nothing can happen any more (`left_over`).
     """
 
@@ -79,11 +81,15 @@ class Seen:
     asked: tuple[Mapping[str, Any], ...]
     answers: tuple[Mapping[str, Any], ...]
     is_quiet: bool
+    others: frozenset[int] = frozenset()
 
     @property
     def has_open(self) -> bool:
         """Whether all states have to be explored for a property."""
-        return any(row["answer"] == "unknown" for row in self.answers)
+        return any(
+            row["answer"] == "unknown" and i not in self.others
+            for i, row in enumerate(self.answers)
+        )
 
     def with_more(self, whole: Exploration) -> Seen | None:
         """With what a larger part of the whole space says of open properties; None: that is all that is asked.
@@ -124,6 +130,7 @@ def abstract(
     properties: Sequence[Stated] = (),
     *,
     least: int = LEAST_TOKENS,
+    demanded: Mapping[int, int] = MappingProxyType({}),
 ) -> Abstract | None:
     """The net of turns with its limits; None: there is nothing to count so.
 
@@ -132,7 +139,7 @@ def abstract(
         plan: what is asked.
         kept: more places of which all tokens count.
         properties: conditions on its states, those of `plan` that are not known.
-        least: as for `counts`.
+        least, demanded: as for `counts`.
     """
     loose = loosened(partition, [x.places for x in properties])
     if loose is None or not partition.final_places:
@@ -143,7 +150,15 @@ def abstract(
     asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
     asked |= {p for x in properties for p in x.exact}
     free = own - asked - {c.place for c in partition.channels}
-    made = counted(running.net, plan.storage, table, free, never=running.probes, least=least)
+    made = counted(
+        running.net,
+        plan.storage,
+        table,
+        free,
+        never=running.probes,
+        least=least,
+        demanded=demanded,
+    )
     if made is None:
         return None
     return Abstract(running, made.counts, made.turns, made.ranking, made.sizes, tuple(properties))
@@ -224,9 +239,11 @@ def look(
     looked = Looked(running, _bounded(found, made, plan), None)
     told: dict[int, Mapping[str, Any]] = {i: {**row, "part": True} for i, row in enumerate(known)}
     for (i, x), row in zip(properties, rows, strict=False):
-        if row["answer"] == "yes":
+        if x.holds(row):
             told[i] = x.row(plan.properties.properties[i])
-    return Seen(looked, said, asked, tuple(told[i] for i in sorted(told)), quiet["answer"] == "yes")
+    rows_of = tuple(told[i] for i in sorted(told))
+    others = frozenset(i for i, p in enumerate(plan.properties.properties) if p.of_net)
+    return Seen(looked, said, asked, rows_of, quiet["answer"] == "yes", others)
 
 
 def _all_commute(
@@ -239,10 +256,23 @@ def _all_commute(
     if not pairs:
         return pairs is not None
     # The states in which it takes any of its firings.
-    alone = replace(made, properties=())
-    lines = questions(alone, plan, made.ranking.rising(), first=False, apart=pairs)
-    own = replace(options, questions=lines, stem="orders")
-    found = explore(made.running.net, plan.storage, limits, Diagnostics(), own)
+    alone: Abstract | None = replace(made, properties=())
+    more, limited = diamonds.demanded(pairs), {x.place: x.most for x in made.counts.limits}
+    if any(n > limited.get(p, n) for p, n in more.items()):
+        alone = abstract(partition, plan, options.whole, demanded=more)
+    if alone is None:
+        return False
+    lines = questions(alone, plan, alone.ranking.rising(), first=False, apart=pairs)
+    own = replace(
+        options,
+        turns=alone.turns,
+        counts=alone.counts,
+        sizes=alone.sizes,
+        generated=options.generated if alone.sizes is made.sizes else Generated(),
+        questions=lines,
+        stem="orders",
+    )
+    found = explore(alone.running.net, plan.storage, limits, Diagnostics(), own)
     is_seen = found is not None and found.complete and found.error is None
     if found is None or not is_seen or len(found.answers) != lines.count("\n? "):
         return False
@@ -252,7 +282,7 @@ def _all_commute(
 def _open_properties(
     partition: Partition, plan: Plan, known: Sequence[Mapping[str, Any]]
 ) -> list[tuple[int, Stated]] | None:
-    """Those that a part of the whole space does not decide, by number; None: one is no condition on states."""
+    """Those that states may tell and a part of the whole space does not, by number; None: it was not asked."""
     properties = plan.properties.properties
     if len(known) < len(properties):
         return None
@@ -260,10 +290,7 @@ def _open_properties(
     over = Running.of(partition, loose=True).over if left else 0
     found: list[tuple[int, Stated]] = []
     for i in left:
-        own = stated(properties[i], over, plan.properties, partition)
-        if own is None:
-            return None
-        found.append((i, own))
+        found += ((i, x) for x in ways(properties[i], over, plan.properties, partition))
     return found
 
 

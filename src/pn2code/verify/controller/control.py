@@ -55,11 +55,13 @@ from pn2code.verify.controller.control_types import (
     CONFLUENT,
     FINITE,
     MAX_FIRINGS,
+    MOST_WRITTEN,
     OWNERSHIP,
     CellProgram,
     Check,
     Control,
     Plan,
+    WrittenGraph,
 )
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.hunts import hunt
@@ -67,7 +69,7 @@ from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running
-from pn2code.verify.controller.stated import Stated, all_stated, stated
+from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction
@@ -217,7 +219,14 @@ def examine(
             counts_part = replace(part, max_states=few)
         # To compile better what sees so little takes longer than it saves.
         soon = replace(options, first_states=counts_part.max_states) if may_count else options
-        found = explore(running.net, plan.storage, counts_part, d, soon)
+
+        def explore_all(limits: Limits, options: ExploreOptions) -> Exploration | None:
+            own = replace(
+                options, graph=plan.graph, graph_limit=None if plan.graph is None else MOST_WRITTEN
+            )
+            return explore(running.net, plan.storage, limits, d, own)
+
+        found = explore_all(counts_part, soon)
         if may_count and found is not None and found.why == "states":
             own = replace(soon, questions=of_orders(running, plan.firings), stem="orders")
             orders_part = _part_of_orders(running, plan, counts_part, own, d)
@@ -238,8 +247,7 @@ def examine(
                 rows = _hunted(running, plan, part, soon, in_counts.answers)
                 in_counts = replace(in_counts, answers=rows)
             if in_counts is None or in_counts.has_open:
-                more = first_part if in_counts is None else part
-                found = explore(running.net, plan.storage, more, d, options)
+                found = explore_all(first_part if in_counts is None else part, options)
                 if in_counts is not None and found is not None:
                     in_counts = in_counts.with_more(found)
         if in_counts is None and may_turn and found is not None and found.why == "states":
@@ -247,19 +255,21 @@ def examine(
                 in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
                 if in_turns is not None:
                     turned = _told_in_turns(running, plan, part, options, found, in_turns)
-                if in_turns is None or any(row["answer"] == "unknown" for row in turned):
-                    found = explore(running.net, plan.storage, part, d, options)
+                if in_turns is None or _is_open(plan, turned):
+                    found = explore_all(part, options)
                     if found is not None and in_turns is not None:
                         turned = _with_part(turned, found)
                         in_turns = in_turns if turned else None
                 if in_turns is not None and in_turns.running.meek and _has_runs(turned):
                     in_turns = None  # whether scripts can do so is looked for in the whole net
-                    found = explore(running.net, plan.storage, part, d, options)
+                    found = explore_all(part, options)
             except OutOfReachError as problem:  # what was seen of the whole is what is known
                 plan = replace(plan, cut=str(problem))
         if found is None:
             return None
         of_orders_run = running
+        if plan.graph is not None and found.complete and plan.graph.exists():
+            program = replace(program, graph=WrittenGraph(plan.graph, found.nodes, found.arcs))
         if in_turns is not None:
             found, running = in_turns.found, in_turns.running
             of_orders_run = running
@@ -299,6 +309,7 @@ def examine(
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
         is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
+        other: tuple[Exploration, Sequence[Mapping[str, Any]], Running] | None = None
         if in_counts is not None:
             said, asked = in_counts.said, in_counts.asked
             is_choiceless = False
@@ -316,11 +327,19 @@ def examine(
                 orders = found
             elif not ruled_out:
                 own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
-                orders = explore(running.net, plan.storage, limits, d, own)
+                first = limits.counts_from if not moves and _may_reduce(partition, limits) else None
+                some = limits if first is None else replace(limits, max_states=first)
+                orders = explore(running.net, plan.storage, some, d, own)
+                if first is not None and orders is not None and orders.why == "states":
+                    other = _reduced_orders(partition, plan, part, options, found, orders, at_once)
+                    if other is not None:
+                        orders, asked, of_orders_run = other
+                    elif limits.max_states != first:
+                        orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None
         keep = Keeper(plan, running)
-        if not is_choiceless and in_turns is None and in_counts is None:
+        if not is_choiceless and in_turns is None and in_counts is None and other is None:
             asked = orders.answers if orders is not found else ()
         doubt = ""
         if running.unsure is not None and said:
@@ -355,6 +374,8 @@ def examine(
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
+            reduced_orders=other is not None,
+            counted_orders=other is not None and other[0].is_counted,
             program=program,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
@@ -377,7 +398,14 @@ def _hunted(
         return explore(running.net, plan.storage, limits, Diagnostics(), options)
 
     own = replace(options, bindings=(), whole=())
-    return hunt(properties, rows, lines, limits, own, explored)
+    mine = [i for i, p in enumerate(plan.properties.properties) if not p.of_net]
+    found = hunt(
+        [properties[i] for i in mine], [rows[i] for i in mine], lines, limits, own, explored
+    )
+    all_rows = list(rows)
+    for i, row in zip(mine, found, strict=True):
+        all_rows[i] = row
+    return tuple(all_rows)
 
 
 def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
@@ -385,7 +413,7 @@ def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
     most, least = limits.max_states, limits.turns_from
     if least is None or (most is not None and most <= least):
         return False
-    return not plan.cut and not partition.net.timed and all_stated(plan.properties, partition)
+    return not plan.cut and not partition.net.timed
 
 
 def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
@@ -394,8 +422,46 @@ def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
     if first is None or limits.turns_from is None or first > limits.turns_from:
         return False
     is_enough = most is None or most >= first
-    is_of_states = all_stated(plan.properties, partition)
-    return is_enough and is_of_states and not partition.net.timed
+    return is_enough and not partition.net.timed
+
+
+def _may_reduce(partition: Partition, limits: Limits) -> bool:
+    """Whether all orders of firing of a cell need not be looked at, where they are too many."""
+    first, most = limits.counts_from, limits.max_states
+    is_enough = first is not None and (most is None or most >= first)
+    return is_enough and limits.turns_from is not None and not partition.net.timed
+
+
+def _reduced_orders(
+    partition: Partition,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    found: Exploration,
+    orders: Exploration,
+    at_once: str,
+) -> tuple[Exploration, Sequence[Mapping[str, Any]], Running] | None:
+    """What is said of the orders of firing with limits, or in turns, with the net of its evidence; None: nothing.
+
+    Args:
+        partition, plan, limits, options: as for `examine`.
+        found: all states of the cell.
+        orders: a part of those of all orders.
+        at_once: questions about orders.
+    """
+    plan = replace(plan, properties=m.Properties(), cut="")
+    options = replace(options, predicates=(), bindings=())
+    whole = replace(found, answers=())
+    counted = by_counts.look(
+        partition, plan, limits, options, part=whole, order=orders.answers, in_order=at_once
+    )
+    if counted is not None:
+        return counted.looked.found, counted.asked, Running.of(partition)
+    with suppress(OutOfReachError):
+        turned = _looked_in_turns(partition, plan, limits, options, at_once, None)
+        if turned is not None and turned.orders is not None:
+            return turned.orders, turned.orders.answers[:ORDERS], turned.running
+    return None
 
 
 def _part_of_orders(
@@ -425,10 +491,9 @@ def _looked_in_turns(
 ) -> Looked | None:
     """What is seen in turns; None: it is not said."""
     over = Running.of(partition, loose=True).over
-    asked = plan.properties
-    properties = [x for p in asked.properties if (x := stated(p, over, asked, partition))]
+    properties = [x for _, x in _told_by_states(partition, plan, over)]
     loose = by_turns.loosened(partition, [x.places for x in properties])
-    if loose is None or len(properties) != len(asked.properties):
+    if loose is None:
         return None
     running, _ = loose
 
@@ -462,13 +527,26 @@ def _told_in_turns(
 ) -> tuple[Mapping[str, Any], ...]:
     """What is known of properties: what holds in turns, what a part of the cell's states says, and runs."""
     properties = plan.properties.properties
-    rows: list[Mapping[str, Any]] = []
-    for p, mine, of_part in zip(
-        properties, looked.found.answers, part.answers[: len(properties)], strict=False
-    ):
-        row: Mapping[str, Any] = {**of_part, "part": True}
-        rows.append(Stated.row(p) if mine["answer"] == "yes" else row)
+    rows: list[Mapping[str, Any]] = [
+        {**row, "part": True} for row in part.answers[: len(properties)]
+    ]
+    told = _told_by_states(running.partition, plan, looked.running.over)
+    for (i, x), mine in zip(told, looked.found.answers, strict=False):
+        if x.holds(mine):
+            rows[i] = Stated.row(properties[i])
     return _hunted(running, plan, limits, options, rows)
+
+
+def _told_by_states(partition: Partition, plan: Plan, over: int) -> list[tuple[int, Stated]]:
+    """What is asked of states instead of the properties, by their numbers."""
+    asked = plan.properties
+    return [(i, x) for i, p in enumerate(asked.properties) for x in ways(p, over, asked, partition)]
+
+
+def _is_open(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether something is asked of the cell that is not known."""
+    told = zip(plan.properties.properties, rows, strict=False)
+    return any(row["answer"] == "unknown" and not p.of_net for p, row in told)
 
 
 def _has_runs(rows: Sequence[Mapping[str, Any]]) -> bool:

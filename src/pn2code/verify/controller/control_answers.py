@@ -20,6 +20,7 @@ from pn2code.verify.controller.control_types import (
     CHANNELS,
     CONFLUENT,
     FINITE,
+    OF_ORDERS,
     OWNERSHIP,
     Check,
     Control,
@@ -153,6 +154,8 @@ def settled(control: Control) -> Control:
         assumes = control.premises.of_check(check.name, check.answer)
         if control.reduced and check.answer == "yes" and check.name != OWNERSHIP:
             assumes = (*assumes, IN_TURNS, *([COUNTED] if control.is_counted else []))
+        if control.reduced_orders and check.answer == "yes" and check.name in OF_ORDERS:
+            assumes = (*assumes, IN_TURNS, *([COUNTED] if control.counted_orders else []))
         checks.append(replace(check, assumes=assumes))
     return replace(control, checks=tuple(checks))
 

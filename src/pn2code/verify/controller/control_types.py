@@ -59,10 +59,14 @@ MEANINGS = {
     OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
     IN_TIME: "nobody owes an answer for longer than the supervisor waits for it, if commands take planned times",
 }
+OF_ORDERS = frozenset({FINITE, BOUNDED, CONFLUENT})
+"""Checks of all orders in which a supervisor may fire."""
 KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
 STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH)
 """Checks where a "no" means that the supervisor stops, or the script of a robot and the cell with it."""
+MOST_WRITTEN = 300_000
+"""States of a cell whose graph is written for those who go through it."""
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 
@@ -187,6 +191,8 @@ class Plan:
         cut: why no more states of the cell are looked at than its closed net has shown; "": as many as the limits say.
         bounds: by place, most tokens, where the structure of the net proves it.
         primitives, arms: the functions that are commands, and what the robots can reach; None: nothing is known of it.
+        graph: where the graph of the cell is written, if all of it is seen, and it has at most `MOST_WRITTEN` states;
+            None: nowhere.
     """
 
     storage: Mapping[str, str] = field(default_factory=dict)
@@ -203,6 +209,7 @@ class Plan:
     bounds: Mapping[int, int] = field(default_factory=dict)
     primitives: Mapping[str, Primitive] = field(default_factory=dict)
     arms: Arms | None = None
+    graph: Path | None = None
 
     def poses(self, partition: Partition) -> Poses | None:
         """What the arms of a cell are told; None: nothing is known of arms."""
@@ -211,19 +218,30 @@ class Plan:
         return Poses(partition, self.primitives, self.arms, self.storage)
 
 
+@frozen
+class WrittenGraph:
+    """The whole graph of a cell as it runs, in a file, and how large it is."""
+
+    file: Path
+    nodes: int
+    arcs: int
+
+
 @frozen(eq=False)
 class CellProgram:
-    """The compiled cell as it runs, for those who explore it again.
+    """The compiled cell as it runs, for those who explore it again, or want to know what was seen.
 
     Args:
         running: its net.
         predicates: what can be asked of its markings.
         generated: the program of both.
+        graph: its whole graph; None: it was not wanted, or is too large.
     """
 
     running: Running
     predicates: tuple[Predicate, ...]
     generated: Generated
+    graph: WrittenGraph | None = None
 
 
 @frozen
@@ -243,6 +261,8 @@ class Control:
         reduced: whether `found` is the reduced space of `by_turns`, or of `by_counts`.
         quiet: whether it is one of `by_counts`, and nothing is left for the supervisor at its end (`left_over`).
         program: of the whole cell as it runs; None: there is none.
+        reduced_orders: whether what is said of the orders of firing is from such a space, though `found` is not;
+            `counted_orders`: from one of `by_counts`.
     """
 
     partition: Partition
@@ -258,6 +278,8 @@ class Control:
     reduced: bool = False
     quiet: bool = False
     program: CellProgram | None = None
+    reduced_orders: bool = False
+    counted_orders: bool = False
 
     @property
     def is_counted(self) -> bool:

@@ -18,12 +18,15 @@ Two firings t and u are two transitions, or one with two bindings. It is shown t
                   (`updates`). What is put there besides hinders nobody: the binding that was enabled still is, and
                   tokens add up in any order; but not where tokens have reals, since of 0.0 and ~0.0, which are one
                   token, a place keeps the sign of what was there first
+  enough          or of a place of one colour there are as many tokens as the two demand together, in each state in
+                  which both are enabled
   never at once   or the two are never enabled together: constants, or an invariant of the net, exclude it
                   (`structure.relations`); or there is no such state among all that the supervisor comes to when it
                   takes any of its firings
 
-Of the last it is asked in states of which each stands for many markings (`exploring.counts`): what is enabled there is
-what is enabled in the markings. So a "yes" is certain; nothing is said where one of these is not shown.
+Of the last two it is asked in states of which each stands for many markings (`exploring.counts`): what is enabled there
+is what is enabled in the markings, and where there is enough there, they have enough. So a "yes" is certain; nothing is
+said where one of these is not shown.
 """
 
 from __future__ import annotations
@@ -31,8 +34,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from itertools import combinations
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.reals import may_hold_reals
+from pn2code.net.enumerable import size
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -46,18 +51,37 @@ from pn2code.net.uses import pattern_variables
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
 from pn2code.structure.relations import Relations, relations
+from pn2code.verify.exploring.counts import demanded_by
 from pn2code.verify.exploring.dependency import Use
 from pn2code.verify.exploring.updates import accesses, commute
 
 MOST_PAIRS = 2_000
 """That are asked about."""
-Pairs = tuple[tuple[int, int], ...]
+MOST_DEMANDED = 8
+"""Tokens of a place by a pair."""
+
+
+@frozen
+class Pair:
+    """Two transitions that commute in each state in which they are not both enabled.
+
+    Args:
+        enough: places that hold so many tokens where both are enabled, and then they commute as well; none: nothing
+            else is known of them.
+    """
+
+    first: int
+    second: int
+    enough: tuple[tuple[int, int], ...] = ()
+
+
+Pairs = tuple[Pair, ...]
 
 
 def undecided(
     net: FlatNet, storage: Mapping[str, str], firings: Collection[int], channels: Collection[int]
 ) -> Pairs | None:
-    """Pairs of transitions that commute unless both are enabled in one state; None: it is not shown.
+    """Pairs of transitions that are not known to commute in each state; None: it is not shown.
 
     Args:
         net, storage: as for `explore`.
@@ -72,20 +96,36 @@ def undecided(
     if not all(_has_one_binding(t, single) for t in own):
         return None
     uses = {t.index: _uses(t, known) for t in own}
-    found = [
-        (t.index, u.index)
-        for t, u in combinations(own, 2)
-        if not known.exclude(t.index, u.index)
-        and any(_clash(net, t, u, p, uses, known) for p in uses[t.index].keys() & uses[u.index])
-    ]
+    found: list[Pair] = []
+    for t, u in combinations(own, 2):
+        both = sorted(uses[t.index].keys() & uses[u.index])
+        where = [p for p in both if _clash(net, t, u, p, uses, known)]
+        if where and not known.exclude(t.index, u.index):
+            needs = [(p, _enough(net, t, u, p, uses)) for p in where]
+            enough = tuple((p, n) for p, n in needs if n is not None)
+            found.append(Pair(t.index, u.index, enough if len(enough) == len(needs) else ()))
     return tuple(found) if len(found) <= MOST_PAIRS else None
 
 
-def ask(asked: Questions, pairs: Sequence[tuple[int, int]]) -> None:
-    """Adds one question for each pair: whether they are never enabled in one state."""
-    for t, u in pairs:
-        both = m.conjunction(m.Atom("enabled", t), m.Atom("enabled", u))
-        asked.asked.append(f"? invariant {asked.item(m.negation(both))}")
+def demanded(pairs: Pairs) -> dict[int, int]:
+    """By place, up to which number its tokens have to be known for what is asked."""
+    found: dict[int, int] = {}
+    for place, n in (x for pair in pairs for x in pair.enough):
+        found[place] = max(n, found.get(place, 0))
+    return found
+
+
+def ask(asked: Questions, pairs: Sequence[Pair]) -> None:
+    """Adds one question for each pair: whether where both are enabled there is enough, if that helps."""
+    for pair in pairs:
+        both = m.conjunction(m.Atom("enabled", pair.first), m.Atom("enabled", pair.second))
+        found = asked.item(m.negation(both))
+        if pair.enough:
+            enough = asked.item(m.TRUE)
+            for place, n in pair.enough:
+                enough = asked.line(f"and {enough} {asked.line(f'within {place} {n} -')}")
+            found = asked.line(f"or {found} {enough}")
+        asked.asked.append(f"? invariant {found}")
 
 
 def _has_one_binding(t: FlatTransition, single: Collection[int]) -> bool:
@@ -150,6 +190,28 @@ def _clash(
         return True
     mine, its = accesses(net, t, place), accesses(net, u, place)
     return mine is None or its is None or not commute(mine, its)
+
+
+def _enough(
+    net: FlatNet,
+    t: FlatTransition,
+    u: FlatTransition,
+    place: int,
+    uses: Mapping[int, Mapping[int, Use]],
+) -> int | None:
+    """With how many tokens of a place at which the two clash they commute there; None: that does not depend on it."""
+    colset = net.places[place].colset
+    one, other = uses[t.index][place], uses[u.index][place]
+    if colset.timed or size(colset, 1) != 1 or _disturbs(one, other) or _disturbs(other, one):
+        return None
+    total = 0
+    for arc in (a for x in (t, u) for a in x.arcs if a.place == place):
+        if arc.kind in (ArcKind.INPUT, ArcKind.BOTH):
+            n = demanded_by(arc)
+            if n is None:
+                return None
+            total += n
+    return total if total <= MOST_DEMANDED else None
 
 
 def _disturbs(one: Use, other: Use) -> bool:

@@ -60,6 +60,9 @@ class Arms(Axes, Protocol):
     def why_unreachable(self, robot: str, command: Move) -> str:
         """Why the arm cannot come to where a command leads, with its name; "": it can."""
 
+    def depends_on_tool(self, robot: str, command: Move) -> bool:
+        """Whether it can with some of the tools that it changes, and not with others."""
+
 
 @frozen
 class Bad:
@@ -249,6 +252,8 @@ class Poses:
                     self._waiting[t.name, robot, command] = None
                     continue
                 why = self._arms.why_unreachable(robot, command)
+                if self._arms.depends_on_tool(robot, command):
+                    told.open = _ON_TOOL.format(t.name)
                 if isinstance(command, _GOING) and command.frame == "tool" and not why:
                     continue  # only its external axes were looked at
                 poses[bool(why)].add((robot, _goal(command)))
@@ -260,7 +265,9 @@ class Poses:
         """Moves that depend on where external axes stand: possible from wherever these can be, or it is not known."""
         for name, robot, command in self._waiting:
             ways = self._standing.ways(robot, command)
-            if ways is None or any(self._arms.why_unreachable(robot, way) for way in ways):
+            if ways is not None and any(self._arms.depends_on_tool(robot, way) for way in ways):
+                told.open = _ON_TOOL.format(name)
+            elif ways is None or any(self._arms.why_unreachable(robot, way) for way in ways):
                 told.open = (
                     f"where `{name}` leads its arm depends on where external axes stand then (`check --geometry` "
                     "follows them)"
@@ -291,6 +298,12 @@ class Poses:
             if isinstance(c, MoveAxes | MoveExternal | _GOING)
             and (not isinstance(c, _GOING) or c.frame != "tool" or c.along)
         ]
+
+
+_ON_TOOL = (
+    "where `{}` leads its arm can be reached with some of its tools and not with others, or without one (`check "
+    "--geometry` follows which it has; `tcp` of the primitive says which it must be)"
+)
 
 
 def _goal(command: Move) -> object:

@@ -10,11 +10,12 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.config import MOTIONS, CellConfig
+from pn2code.cell.config import MOTIONS, CellConfig, Primitive
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
 from pn2code.properties.universal import is_universal
+from pn2code.robot.commands import CHANGES
 from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
@@ -38,6 +39,10 @@ _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
     "and nothing is where a part comes into the cell (`pn2code check --geometry` looks at it, and so "
     "does a run)"
+)
+_TOOLS = (
+    "robots find the tools that they couple where these lie, leave them where they belong, and have the right one in "
+    "use where they need one (`pn2code check --geometry` follows which they have, and so does a run)"
 )
 IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
@@ -64,6 +69,7 @@ class Premises:
         moves: whether programs move arms: a move that is not possible stops its program; arcs: whether some go on arcs,
             which need not be there.
         parts: whether programs do something to parts: what is not possible stops its program.
+        tools: whether there are tools that robots change.
     """
 
     replies: Replies = Replies()
@@ -74,6 +80,7 @@ class Premises:
     moves: bool = False
     arcs: bool = False
     parts: bool = False
+    tools: bool = False
 
     @staticmethod
     def of(
@@ -99,7 +106,8 @@ class Premises:
             bool(config.sensors),
             moves=not MOTIONS.isdisjoint(used.values()),
             arcs="move_circular" in used.values(),
-            parts=any(config.primitives[name].handling for name in used),
+            parts=any(_handles(config.primitives[name]) for name in used),
+            tools=bool(config.tools_at_start),
         )
 
     def of_check(self, name: str, answer: str) -> tuple[str, ...]:
@@ -136,7 +144,13 @@ class Premises:
             *([_MOVING] if self.moving else []),
             *([self.reached] if self.moves else []),
             *([_PARTS] if self.parts else []),
+            *([_TOOLS] if self.tools else []),
         ]
+
+
+def _handles(primitive: Primitive) -> bool:
+    """Whether it does something to a part."""
+    return primitive.handling is not None and primitive.handling.effect not in CHANGES
 
 
 def _is_possibility(asked: m.Asked) -> bool:

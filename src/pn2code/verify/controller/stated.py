@@ -1,6 +1,7 @@
 """Properties of a cell that follow from what holds in each state, so that reduced states tell (`by_counts`).
 
     made = stated(property, running.over, partition)      # None: it is not of that kind
+    all_of_them = ways(property, ...)                     # that, and a formula about the supervisor's own places
     made.places, made.exact                               # what it looks at together; and of which all tokens count
     made.ask(questions)                                   # one question about all states; its "yes" is enough
 
@@ -22,6 +23,13 @@ more than has to be so:
                   p holds in each state that T leads to. A place that T changes is looked at together with what p looks
                   at, so these states are those that T leads to in any order
 
+    ltl f, without fairness, X, dead, enabled and fires, about places that only the supervisor touches (`is_own`)
+                  turns keep what the places of a group hold one after the other, in each run to a dead state, and f
+                  does not tell how long they hold it. A run of the cell is the beginning of one in the net of turns,
+                  in which robots go on after the supervisor has finished, and change none of these places. So f holds
+                  of all runs of the cell if it holds of all paths of states that come to a dead one; others, which go
+                  round, stand for no run
+
 Such atoms may stand only where more of them demands more: on the left of an implication, under one negation.
 """
 
@@ -34,6 +42,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import ArcKind, Form
 from pn2code.properties import meaning as m
+from pn2code.properties.ltl import TooLargeError, automaton
 from pn2code.properties.questions import Questions, expanded
 
 
@@ -46,13 +55,14 @@ class Stated:
     """A property as a condition on all states.
 
     Args:
-        asked: what it asks: `Bound`, or a condition that has to hold in all states.
+        asked: what it asks: `Bound`, or a condition that has to hold in all states; `Linear`: a formula that has to
+            hold on all maximal paths of states.
         is_of_ends: whether it has to hold in dead states only.
         steps: transitions; if there are any, it has to hold only where one of them leads to.
         places: what it looks at; `exact`: of these, those whose numbers of tokens have to be known.
     """
 
-    asked: m.Bound | m.Formula
+    asked: m.Bound | m.Linear | m.Formula
     is_of_ends: bool
     steps: tuple[int, ...]
     places: frozenset[int]
@@ -63,7 +73,7 @@ class Stated:
 
     def ask(self, asked: Questions) -> None:
         """Adds one question."""
-        if isinstance(self.asked, m.Bound):
+        if isinstance(self.asked, m.Bound | m.Linear):
             asked.ask(self.asked)
             return
         found = self._item(asked, self.asked)
@@ -81,6 +91,15 @@ class Stated:
                 f"or {asked.line(f'not {self._marked(asked, [self.over])}')} {found}"
             )
         asked.asked.append(f"? invariant {found}")
+
+    @property
+    def is_of_paths(self) -> bool:
+        """Whether it is a formula about paths."""
+        return isinstance(self.asked, m.Linear)
+
+    def holds(self, row: Mapping[str, Any]) -> bool:
+        """Whether the answer is that it is so; of a formula about paths it is asked for one that violates it."""
+        return bool(row["answer"] == ("no" if self.is_of_paths else "yes"))
 
     @staticmethod
     def row(p: m.Property) -> Mapping[str, Any]:
@@ -147,12 +166,41 @@ def stated(
     return Stated(condition, is_of_ends, steps, frozenset(places), frozenset(exact), over, inputs)
 
 
-def all_stated(properties: m.Properties, partition: Partition) -> bool:
-    """Whether all properties of a cell are of that kind, and none is about its closed net alone."""
-    return all(
-        not p.of_net and stated(p, 0, properties, partition) is not None
-        for p in properties.properties
+def ways(
+    p: m.Property, over: int, properties: m.Properties, partition: Partition
+) -> tuple[Stated, ...]:
+    """All ways in which a property follows from reduced states; each is enough. The arguments: as for `stated`."""
+    found = (
+        None if p.of_net else stated(p, over, properties, partition),
+        None if p.of_net else is_own(p, over, properties, partition),
     )
+    return tuple(x for x in found if x is not None)
+
+
+def is_own(
+    p: m.Property, over: int, properties: m.Properties, partition: Partition
+) -> Stated | None:
+    """A formula about paths that looks at places of the supervisor only; None: it asks something else."""
+    if not isinstance(p.asked, m.Linear) or p.asked.fair or not _is_lasting(p.asked.formula):
+        return None
+    numbers = {a.number for a in m.atoms(p.asked.formula) if a.kind == "pred"}
+    places = frozenset(place for i in numbers for _, place in properties.predicates[i].places)
+    channels = {c.place for c in partition.channels}
+    if any(partition.place_owner[x] != 0 or x in channels for x in places):
+        return None
+    ending = m.Linear(m.Op("implies", (m.Op("F", (m.DEAD,)), p.asked.formula)))
+    try:
+        automaton(ending.formula, negated=True)
+    except TooLargeError:
+        return None
+    return Stated(ending, False, (), places, places, over, {})
+
+
+def _is_lasting(f: m.Formula) -> bool:
+    """Whether it says what places hold one after the other, and not for how many steps."""
+    if isinstance(f, m.Atom):
+        return f.kind in ("true", "pred")
+    return f.operator != "X" and f.step < 0 and all(map(_is_lasting, f.parts))
 
 
 def _condition(asked: m.Asked) -> tuple[m.Formula, bool, tuple[int, ...]] | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
@@ -43,6 +44,7 @@ def counted(
     *,
     never: Collection[int] = (),
     least: int = LEAST_TOKENS,
+    demanded: Mapping[int, int] = MappingProxyType({}),
 ) -> Counted | None:
     """The limits of a net; None: there is nothing to count so.
 
@@ -51,11 +53,11 @@ def counted(
         table: its turns.
         free: places whose tokens need not be known exactly.
         never: transitions that never occur.
-        least: as for `counts`.
+        least, demanded: as for `counts`.
     """
     known = bounds_and_sums(net, storage=storage)
     bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
-    found = counts(net, relations(net, storage), bounds, free=free, least=least)
+    found = counts(net, relations(net, storage), bounds, free=free, least=least, demanded=demanded)
     if found is None or not found.limited:
         return None
     sizes = _sizes(net, Sizes.start(net, storage, known), found)

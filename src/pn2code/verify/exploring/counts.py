@@ -40,6 +40,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
@@ -121,6 +122,7 @@ def counts(
     *,
     free: Collection[int],
     least: int = LEAST_TOKENS,
+    demanded: Mapping[int, int] = MappingProxyType({}),
 ) -> Counts | None:
     """The limits of a net; None: there are none.
 
@@ -130,6 +132,7 @@ def counts(
         bounds: by place, most tokens, where the structure proves it.
         free: places of which nobody asks how many tokens they hold.
         least: tokens that a place may hold to be worth a limit.
+        demanded: by place, up to which number its tokens have to be known besides.
     """
     at: dict[int, list[FlatTransition]] = {}
     for t in net.transitions:
@@ -140,7 +143,8 @@ def counts(
         touching = at.get(p, [])
         if bounds.get(p, 0) >= least:
             most = _most_demanded(net, p, touching)
-            limits += [] if most is None else [Limit(p, most, False)]
+            more = demanded.get(p, 0)
+            limits += [] if most is None else [Limit(p, max(most, more), False)]
         elif p in known.single:
             is_near = any(_is_narrow(r, p, bounds) for r in known.found)
             most = _most_compared(net, known, p, touching) if is_near else None
@@ -167,7 +171,7 @@ def _most_demanded(net: FlatNet, place: int, touching: Collection[FlatTransition
             if arc.kind is ArcKind.INHIBITOR:
                 demanded = max(demanded, 1)
                 continue
-            own = _demanded(arc) if arc.kind is not ArcKind.RESET else None
+            own = demanded_by(arc) if arc.kind is not ArcKind.RESET else None
             if own is None:
                 return None
             demanded += own
@@ -175,7 +179,7 @@ def _most_demanded(net: FlatNet, place: int, touching: Collection[FlatTransition
     return most if most <= MOST_DEMANDED else None
 
 
-def _demanded(arc: FlatArc) -> int | None:
+def demanded_by(arc: FlatArc) -> int | None:
     """Tokens that an arc demands; None: it depends on something."""
     if arc.inscription is None or arc.inscription.form not in (Form.TOKEN, Form.MULTISET):
         return None

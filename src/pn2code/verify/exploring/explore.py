@@ -91,7 +91,8 @@ class ExploreOptions:
         stem: what the names of their files begin with.
         initial: what their headers say of initial markings that are not those of the net's file, as JSON.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
-            exploration is not complete, or has more than `graph_limit` nodes.
+            exploration is not complete, or has more than `graph_limit` nodes. `part`: where a limit was reached it is
+            written of the first nodes, 200,000 at most; with `cut` at those of which arcs are missing.
         colours: of each multi-set bound at most so many colours are told; None: all. `whole`: places of which all are.
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
             that they mention. `evidence`: a folder for the runs that show the answers.
@@ -115,6 +116,7 @@ class ExploreOptions:
     initial: str | None = None
     graph: Path | None = None
     graph_limit: int | None = None
+    part: bool = False
     colours: int | None = None
     whole: tuple[int, ...] = ()
     questions: str = ""
@@ -367,6 +369,7 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
         *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]
     arguments = [text for name, value in given if value is not None for text in (name, str(value))]
+    arguments += ["--write-part"] if options.part else []
     return arguments + ["--progress"] + ([] if limits.graph else ["--no-graph"])
 
 

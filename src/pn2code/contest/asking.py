@@ -1,0 +1,188 @@
+"""An examination of an input, line by line, as far as the time allows.
+
+    asking = Asking(program, "CTLFireability", folder, deadline, mebibytes=4096, only="", say=print)
+    for line in asking.of_tables(tables): ...
+    for line in asking.of_net(net, unfolded): ...    # a coloured one
+
+A coloured net that is large when it is unfolded is asked without its colours first (uncoloured.py), for a short time;
+and if it cannot be unfolded in its share of the time, for the rest of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import prod
+from pathlib import Path
+
+from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.contest.engine import Space
+from pn2code.contest.examinations import SPACE, Asked, asked
+from pn2code.contest.portfolio import answers, space
+from pn2code.contest.tables import Tables
+from pn2code.contest.uncoloured import uncoloured
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.game.token_game import Game
+from pn2code.unfold.plain import TooLargeError
+
+UNKNOWN = "CANNOT_COMPUTE"
+FIRST = 0.15
+FIRST_S = 6.0
+"""Of the time, and at most so long, a large coloured net is asked without its colours at first."""
+UNFOLDING = 0.5
+"""Of the time that is left then, for unfolding."""
+LARGE_PLACES = 4_000
+LARGE_BINDINGS = 20_000
+"""From so many places, or bindings of the variables of a transition, on a net is large."""
+
+
+class Asking:
+    """What is asked.
+
+    Args:
+        program: the engine.
+        examination: its name.
+        folder: with the files of formulas.
+        deadline: of all together.
+        mebibytes: of memory.
+        only: a method, alone; "": all.
+        say: where reasons go why something is not known.
+    """
+
+    def __init__(
+        self,
+        program: Path,
+        examination: str,
+        folder: Path,
+        deadline: Deadline,
+        *,
+        mebibytes: int,
+        only: str,
+        say: Callable[[str], None],
+    ) -> None:
+        self.program = program
+        self.examination = examination
+        self.folder = folder
+        self.deadline = deadline
+        self.mebibytes = mebibytes
+        self.only = only
+        self.say = say
+        self.unknown: dict[str, str] | None = None
+        """Lines that are open, with the reason; None: nothing was asked yet."""
+
+    def of_tables(self, tables: Tables) -> Iterator[str]:
+        """The lines for a place/transition net.
+
+        Raises:
+            FormulaError: a file of formulas cannot be read.
+        """
+        if self.examination == SPACE:
+            left = max(0.0, self.deadline.left or 0.0)
+            sizes = space(
+                self.program, tables, seconds=left, mebibytes=self.mebibytes, only=self.only
+            )
+            yield from _space(sizes)
+            return
+        yield from self._answers(tables, self.deadline, None)
+        yield from self._rest()
+
+    def of_net(self, net: FlatNet, unfolded: Callable[[FlatNet], Tables | None]) -> Iterator[str]:
+        """The lines for a coloured net.
+
+        Args:
+            net: the net.
+            unfolded: unfolds it; None: it cannot be, and the reason was given.
+
+        Raises:
+            FormulaError: a file of formulas cannot be read.
+            GameError: the initial marking cannot be made.
+        """
+        has_formulas = self.examination != SPACE
+        game = without = tables = None
+        if has_formulas:
+            game, without = self._without_colours(net)
+        if game is not None and without is not None and is_large(net, game):
+            part = min(FIRST, FIRST_S / max(self.deadline.left or 0.0, FIRST_S))
+            yield from self._answers(without, self.deadline.share(part), game)
+            if self.unknown is not None and not self.unknown:
+                return
+        try:
+            with self.deadline.share(UNFOLDING if has_formulas else 1.0).enforced():
+                tables = unfolded(net)
+        except (TimeIsOverError, TooLargeError) as error:
+            self.say(f"not unfolded: {str(error) or 'it takes too long'}")
+            if game is not None and without is not None:
+                yield from self._answers(without, self.deadline, game)
+            yield from self._rest()
+            return
+        if tables is None:
+            yield from self._rest()
+        else:
+            yield from self.of_tables(tables)
+
+    def _without_colours(self, net: FlatNet) -> tuple[Game | None, Tables | None]:
+        try:
+            with self.deadline.enforced():
+                game = Game(net)
+                return game, uncoloured(net, game)
+        except TimeIsOverError:
+            return None, None
+
+    def _answers(self, tables: Tables, deadline: Deadline, game: Game | None) -> Iterator[str]:
+        questions: list[Asked] = []
+        try:
+            with deadline.enforced():
+                questions = asked(tables, self.examination, self.folder)
+        except TimeIsOverError:
+            return
+        if self.unknown is None:
+            self.unknown = {q.name: "" for q in questions}
+        questions = [q for q in questions if q.name in self.unknown]
+        if game is None:
+            self.unknown.update({q.name: q.why_not for q in questions})
+        found = answers(
+            self.program,
+            tables,
+            questions,
+            seconds=max(0.0, deadline.left or 0.0),
+            mebibytes=self.mebibytes,
+            only=self.only,
+            game=game,
+        )
+        for result in found:
+            del self.unknown[result.name]
+            value = str(result.value).upper()
+            yield f"FORMULA {result.name} {value} TECHNIQUES {result.techniques}"
+
+    def _rest(self) -> Iterator[str]:
+        """What is not known."""
+        if self.unknown is None:
+            yield UNKNOWN
+            return
+        for name, why in self.unknown.items():
+            if why:
+                self.say(f"{name}: {why}")
+            yield f"FORMULA {name} {UNKNOWN}"
+
+
+def is_large(net: FlatNet, game: Game) -> bool:
+    """Whether unfolding a net takes a second or more, as far as the sizes of its colour sets say it."""
+    colours = game.colours
+    places = sum(colours.size(p.colset) for p in net.places)
+    bindings = sum(
+        prod(colours.size(s.colset) for s in t.variables if s.colset is not None)
+        for t in net.transitions
+    )
+    return places > LARGE_PLACES or bindings > LARGE_BINDINGS
+
+
+def _space(found: Space | None) -> Iterator[str]:
+    if found is None:
+        yield UNKNOWN
+        return
+    for what, number in (
+        ("STATES", found.states),
+        ("TRANSITIONS", found.arcs),
+        ("MAX_TOKEN_IN_PLACE", found.tokens_in_place),
+        ("MAX_TOKEN_PER_MARKING", found.tokens_in_marking),
+    ):
+        yield f"STATE_SPACE {what} {number} TECHNIQUES {found.method}"

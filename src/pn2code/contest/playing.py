@@ -1,0 +1,210 @@
+"""Random runs of a coloured net by its token game, for what is too large to be unfolded.
+
+    play = Play(net, tables, open_, said, ends)    # beside other methods; `open_` gives what is still asked
+    play.start()
+
+A marking that is seen is reachable, so that each answer is final: a condition holds in it, it is dead, or places hold
+so many tokens together. Only the numbers of tokens and the transitions that are enabled are looked at.
+"""
+
+from __future__ import annotations
+
+import random
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable
+from itertools import islice
+
+from pn2code.base.frozen import frozen
+from pn2code.contest.engine import Answer, Said
+from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, Tokens, Truth
+from pn2code.contest.tables import Tables
+from pn2code.net.flat import FlatTransition
+from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.marking import BindingElement, Marking
+from pn2code.semantics.game.token_game import Game
+
+TECHNIQUE = "COLOURED_WALK"
+_STEPS = 200
+"""Of the first run; each one is longer than the one before."""
+_LONGEST = 1_000_000
+_LONGER = 1.5
+_CHOICES = 4
+"""Bindings of a transition of which one is drawn."""
+
+
+@frozen
+class Sight:
+    """What is seen of a marking.
+
+    Args:
+        tokens: by place of the file.
+        enabled: ids of transitions.
+    """
+
+    tokens: tuple[int, ...]
+    enabled: frozenset[str]
+
+
+@frozen
+class Sought:
+    """An open question.
+
+    Args:
+        number: of the question.
+        holds: whether a marking is what is sought; None for a bound.
+        sum: of a bound.
+    """
+
+    number: int
+    holds: Callable[[Sight], bool] | None
+    sum: tuple[tuple[int, int], ...] = ()
+
+
+class Play(threading.Thread):
+    """The runs, until the time is over.
+
+    Args:
+        game: of the net.
+        open_: what is still asked.
+        said: where the answers go.
+        ends: when to stop, on the monotonic clock.
+        seed: of what is drawn.
+    """
+
+    def __init__(
+        self,
+        game: Game,
+        open_: Callable[[], Iterable[Sought]],
+        said: Said,
+        ends: float,
+        seed: int = 1,
+    ) -> None:
+        super().__init__(daemon=True)
+        self.game = game
+        self.open = open_
+        self.said = said
+        self.ends = ends
+        self.draw = random.Random(seed)
+        self.is_over = threading.Event()
+        self.most: dict[int, int] = {}
+
+    def run(self) -> None:
+        """Run after run."""
+        try:
+            steps, is_even = float(_STEPS), False
+            while self._goes_on():
+                self._run(int(steps), is_even)
+                steps, is_even = min(_LONGEST, steps * _LONGER), not is_even
+        except Exception as error:  # it belongs to the one who waits
+            self.said.put(error)
+
+    def end(self) -> None:
+        """Stop at the next step."""
+        self.is_over.set()
+
+    def _goes_on(self) -> bool:
+        return not self.is_over.is_set() and time.monotonic() < self.ends
+
+    def _run(self, steps: int, is_even: bool) -> None:
+        """One run; if it `is_even`, of the enabled transitions one that has occurred least is taken."""
+        marking: Marking = self.game.own_initial_marking
+        count: Counter[int] = Counter()
+        for _ in range(steps):
+            if not self._goes_on():
+                return
+            enabled = self.game.enabled_transitions(marking)
+            self._look(marking, enabled)
+            if not enabled:
+                return
+            self.draw.shuffle(enabled)
+            t = min(enabled, key=lambda t: count[t.index]) if is_even else enabled[0]
+            count[t.index] += 1
+            found = list(
+                islice(self.game.enabling.enabled(t, marking), self.draw.randint(1, _CHOICES))
+            )
+            try:
+                marking, _ = self.game.occur(
+                    marking, BindingElement.make(t, self.draw.choice(found))
+                )
+            except GameError:  # a binding that raises an exception leads nowhere
+                return
+
+    def _look(self, marking: Marking, enabled: list[FlatTransition]) -> None:
+        sight = Sight(tuple(map(len, marking.places)), frozenset(t.id for t in enabled))
+        for sought in self.open():
+            n = sought.number
+            if sought.holds is None:
+                total = sum(k * sight.tokens[p] for p, k in sought.sum)
+                if total > self.most.get(n, -1):
+                    self.most[n] = total
+                    self.said.put(Answer(n, total, False, TECHNIQUE))
+            elif sought.holds(sight):
+                self.said.put(Answer(n, True, True, TECHNIQUE))
+
+
+def holds(tables: Tables, f: Formula) -> Callable[[Sight], bool]:
+    """A formula about one marking as a function of what is seen of it."""
+    match f:
+        case Truth(value):
+            return lambda sight: value
+        case Fireable(names):
+            wanted = frozenset(names)
+            return lambda sight: not wanted.isdisjoint(sight.enabled)
+        case AtMost(left, right):
+            a, b = _number(tables, left), _number(tables, right)
+            return lambda sight: a(sight) <= b(sight)
+        case Op("not", (part,)):
+            inner = holds(tables, part)
+            return lambda sight: not inner(sight)
+        case Op("and" | "or" as operator, parts):
+            found = [holds(tables, p) for p in parts]
+            joined = all if operator == "and" else any
+            return lambda sight: joined(h(sight) for h in found)
+    raise ValueError(f"{f} is about more than one marking")
+
+
+def _number(tables: Tables, side: Constant | Tokens) -> Callable[[Sight], int]:
+    if isinstance(side, Constant):
+        value = side.value
+        return lambda sight: value
+    places = [p for name in side.places for p in tables.places[name]]
+    return lambda sight: sum(sight.tokens[p] for p in places)
+
+
+def said_in_words(text: str, transitions: list[str]) -> Callable[[Sight], bool]:
+    """The same for the questions of the examinations without formulas, in the engine's own words.
+
+    Args:
+        text: the question, after its number and kind.
+        transitions: ids, by number.
+    """
+    if text == "dead":
+        return lambda sight: not sight.enabled
+    value, rest = _read(text.split(), transitions)
+    assert not rest
+    return value
+
+
+def _read(words: list[str], transitions: list[str]) -> tuple[Callable[[Sight], bool], list[str]]:
+    word, words = words[0], words[1:]
+    if word == "not":
+        inner, words = _read(words, transitions)
+        return (lambda sight: not inner(sight)), words
+    n, words = int(words[0]), words[1:]
+    if word == "enabled":
+        wanted = frozenset(transitions[int(t)] for t in words[:n])
+        return (lambda sight: not wanted.isdisjoint(sight.enabled)), words[n:]
+    if word == "sum":
+        terms = [(int(words[2 * i]), int(words[2 * i + 1])) for i in range(n)]
+        limit = int(words[2 * n])
+        return (lambda sight: sum(k * sight.tokens[p] for p, k in terms) <= limit), words[
+            2 * n + 1 :
+        ]
+    found = []
+    for _ in range(n):
+        part, words = _read(words, transitions)
+        found.append(part)
+    joined = {"and": all, "or": any}[word]
+    return (lambda sight: joined(h(sight) for h in found)), words

@@ -1,0 +1,44 @@
+"""Which contacts of tools that are changed are permitted: with what couples them, their rack, and what they grip.
+
+A tool is one thing in contact rules: `arm/gripper` in the hand of a robot, `gripper` where it lies. Where many are
+compared, it has further names behind that one (`gripper.tool_held_by_arm`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from pn2code.robot.placed_links import placed_links
+from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, ContactRule
+from pn2code.robot.tools_table import ToolKind
+
+
+def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iterator[ContactRule]:
+    """What couplings touch lying tools with, tools what holds them there, and contact links what they grip."""
+    for robot in robots:
+        ends = [f"{robot.name}/{link}" for link in _end(robot)] if robot.tools else ()
+        for name, kind in robot.tools.items():
+            for end in ends:
+                yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
+            held = f"{robot.name}/{name}"
+            gripped = [f"{k}.*" for k in kind.takes] if kind.tool.contact_links else []
+            for other in (*kind.holders, *gripped):
+                yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
+
+
+def _end(robot: CellRobot) -> Iterator[str]:
+    """The links behind the last axis of the arm."""
+    last = robot.kinematics.joints.stop
+    for link, joint, _ in placed_links(robot):
+        if joint == last or link.startswith("tool_"):
+            yield link
+
+
+def also_of_tools(rule: ContactRule, tools: Mapping[str, ToolKind]) -> Iterator[ContactRule]:
+    """A rule, and the same for the further names that tools in it have."""
+    yield rule
+    if rule.a.split("/")[-1] in tools:
+        yield replace(rule, a=f"{rule.a}.*")
+    if rule.b.split("/")[-1] in tools:
+        yield replace(rule, b=f"{rule.b}.*")
