@@ -91,4 +91,7 @@ def test_a_flag_does_not_come_out_before_its_data(tmp_path: Path) -> None:
 
 
 def test_data_and_their_flag_alone_are_there_at_once(tmp_path: Path) -> None:
-    assert names(tmp_path, NET.replace("      out d : 1\n      out x : 1\n", "      out x : 1\n")) == []
+    assert (
+        names(tmp_path, NET.replace("      out d : 1\n      out x : 1\n", "      out x : 1\n"))
+        == []
+    )
