@@ -215,8 +215,8 @@ def _comparison_of_one(
 ) -> tuple[Callable[[Any, object], bool], Callable[[Any], int]]:
     def equal(self: Any, other: object) -> bool:
         # As tuples: what is no number is itself.
-        same = other.__class__ is self.__class__
-        return (get(self),) == (get(other),) if same else NotImplemented
+        is_one = other.__class__ is self.__class__
+        return (get(self),) == (get(other),) if is_one else NotImplemented
 
     def hashed(self: Any) -> int:
         return hash((get(self),))
