@@ -40,7 +40,10 @@ export class Beside {
       onPlace: () => {},
     });
     if (page.run.cell || run.cell) this.cells(missing);
-    else document.body.dataset.beside = "net";
+    else {
+      document.body.dataset.beside = "net";
+      for (const tab of page.frame.tabs()) if (tab.dataset.pane === "cell") tab.remove(); // there is nothing in that pane
+    }
     this.called();
     this.banner();
   }

@@ -36,7 +36,7 @@ export class NetView {
     this.drawn = new Map();
     /** @type {Map<string, {version: number, node: any, box: import("./tokens.js").Box | null}>} by the places of the page */
     this.tokenNodes = new Map();
-    this.sheet = svg("svg", { class: "sheet", role: "img", "aria-label": "A page of the net" });
+    this.sheet = svg("svg", { class: "sheet", role: "group", "aria-label": "A page of the net" });
     this.flights = new Flights(this.sheet);
     this.window = new Window(this.sheet, {
       whole: () => this.shown().view, onLong: (target) => this.long(target), onMove: () => this.flights.clear(),

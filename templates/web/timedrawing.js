@@ -26,7 +26,7 @@ const LIGHT = new Set(["home", "external"]);
  * @param {number} h
  */
 export function drawStill(view, w, h) {
-  view.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs") };
+  view.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs"), pane: colour("pane") };
   const c = cleared(view.canvas, w, h);
   axis(view, c, w, h);
   view.divide();
@@ -214,8 +214,14 @@ function events(view, c, h) {
     if (t < view.from || t > view.to) return;
     c.fillStyle = view.ink?.differs ?? "";
     c.fillRect(view.x(t) - 1, HEAD - 8, 2, h);
-    c.textAlign = view.x(t) > view.width() - 80 ? "right" : "left";
-    c.fillText(text, view.x(t) + (c.textAlign === "left" ? 5 : -5), HEAD + 8 + i * LABEL);
+    const [x, y] = [view.x(t), HEAD + 8 + i * LABEL];
+    const isLeft = x > view.width() - 80;
+    const { width } = c.measureText(text);
+    c.fillStyle = view.ink?.pane ?? ""; // lanes and ticks would run through the letters
+    c.fillRect(isLeft ? x - 7 - width : x + 3, y - LABEL / 2 - 1, width + 4, LABEL + 2);
+    c.fillStyle = view.ink?.differs ?? "";
+    c.textAlign = isLeft ? "right" : "left";
+    c.fillText(text, x + (isLeft ? -5 : 5), y);
     c.textAlign = "left";
   });
 }

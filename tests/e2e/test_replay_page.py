@@ -495,6 +495,8 @@ def test_two_runs_beside_each_other(tmp_path: Path, chromium: Any) -> None:
         browser.ask("k => replay.step(k)", step - 1)
         assert browser.page.locator(".differs").count() == 0
         assert complaints(browser) == []
+        # On a phone there is no choice that leads to nothing.
+        assert browser.page.locator("#panes button").all_text_contents() == ["Net", "Time", "More"]
         assert browser.errors == []
 
 

@@ -30,6 +30,22 @@ _ASK = """least => {
     const name = own || node.closest("label")?.textContent;
     if (isSeen(node) && !name) found.push(`no name: ${node.outerHTML.slice(0, 100)}`);
   }
+  const inside = "button, a, input, select, [tabindex='0']";
+  for (const node of document.querySelectorAll("[role=img], [aria-hidden=true], button, a, summary")) {
+    const hidden = node.querySelector(inside);
+    if (hidden) found.push(`not told of, since it is within another one: ${hidden.outerHTML.slice(0, 100)}`);
+  }
+  const ids = [...document.querySelectorAll("[id]")].map((n) => n.id);
+  for (const id of new Set(ids.filter((id, i) => ids.indexOf(id) !== i))) found.push(`twice: ${id}`);
+  for (const name of ["aria-controls", "aria-labelledby", "aria-describedby", "for"]) {
+    for (const node of document.querySelectorAll(`[${name}]`)) {
+      const there = document.getElementById(node.getAttribute(name));
+      if (!there) found.push(`${name} leads nowhere: ${node.outerHTML.slice(0, 100)}`);
+    }
+  }
+  for (const node of document.querySelectorAll("img:not([alt]), iframe:not([title])")) {
+    found.push(`no words: ${node.outerHTML.slice(0, 100)}`);
+  }
   for (const node of document.querySelectorAll("body *:not(svg *, script, style)")) {
     const hasText = [...node.childNodes].some((c) => c.nodeType === 3 && c.textContent.trim());
     if (!hasText || !isSeen(node) || node.disabled) continue;

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import random
+import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 
 import pytest
 
+from helpers import pnml_nets as pnml
 from helpers.coloured_families import FAMILIES, shared_memory
 from helpers.coloured_nets import ColouredNet, all_, less, times
 from helpers.examined import examined
-from helpers.random_tables import Graph
+from helpers.random_coloured import random_coloured
+from helpers.random_linear import holds
+from helpers.random_tables import Graph, random_condition
 from pn2code.base.deadline import Deadline
 from pn2code.contest.asking import Asking, is_large
-from pn2code.contest.engine import engine
+from pn2code.contest.engine import Answer, Said, engine
 from pn2code.contest.formulas import AtMost, Constant, Fireable, Op, Tokens, Truth
+from pn2code.contest.playing import Play, Sought, follow
 from pn2code.contest.portfolio import answers
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
@@ -97,6 +104,38 @@ def test_no_answer_is_wrong(program: Path, family: str, tmp_path: Path) -> None:
         assert answer.value == expected[answer.name], answer
 
 
+def test_runs_decide_formulas_of_one_operator(tmp_path: Path) -> None:
+    """With dead initial markings among the nets: nothing comes after these, in linear time they themselves."""
+    decided, dead = 0, 0
+    for seed in range(24):
+        draw = random.Random(seed)
+        made = random_coloured(draw)
+        graph = Graph.of(made.tables(), 60)
+        if graph is None or not graph.markings[0]:
+            continue
+        dead += not graph.successors[0]
+        net = loaded(made, tmp_path)
+        game = Game(net)
+        tables = uncoloured(net, game)
+        assert tables is not None
+        for number in range(16):
+            of, operator = draw.choice("EA"), draw.choice("XFGU")
+            parts = [random_condition(draw, tables, 1) for _ in range(1 + (operator == "U"))]
+            f = Op(of, (Op(operator, tuple(parts)),))
+            is_linear = of == "A" and number % 2 == 1
+            said: Said = SimpleQueue()
+            sought = Sought(0, lambda sight: False, followed=follow(tables, f), is_linear=is_linear)
+            play = Play(game, partial(list, [sought]), said, time.monotonic() + LONG_S)
+            for is_even in (False, True):
+                play.play(20, is_even=is_even)
+            expected = not holds(graph, f) if is_linear else 0 in graph.where(f)
+            while not said.empty():
+                answer = said.get()
+                assert isinstance(answer, Answer) and answer.value == expected, (seed, f)
+                decided += 1
+    assert decided > 50 and dead
+
+
 def test_what_cannot_be_unfolded_is_asked_without_colours(program: Path, tmp_path: Path) -> None:
     net = loaded(shared_memory(), tmp_path)
 
@@ -115,6 +154,24 @@ def test_what_cannot_be_unfolded_is_asked_without_colours(program: Path, tmp_pat
     assert lines("QuasiLiveness") == ["FORMULA QuasiLiveness TRUE"]
     assert lines("StateSpace") == ["CANNOT_COMPUTE"]
     assert said == ["not unfolded: more than 3 places"] * 3
+
+
+def test_a_colour_set_without_bounds_is_no_obstacle(program: Path, tmp_path: Path) -> None:
+    three = '<numberconstant value="3"><integer/></numberconstant>'
+    text = pnml.net(
+        pnml.place("P", "N", pnml.number(1, three)),
+        pnml.place("Q", "N"),
+        pnml.transition("t"),
+        pnml.arc("P", "t", pnml.number(1, pnml.var("n"))),
+        pnml.arc("t", "Q", pnml.number(1, pnml.var("n"))),
+        declarations=pnml.named("N", "<integer/>") + pnml.variable("n", "N"),
+    )
+    net = pnml.flat(text, tmp_path)
+    asking = Asking(
+        program, "QuasiLiveness", tmp_path, Deadline.after(LONG_S), mebibytes=1024, only="", say=print
+    )  # fmt: skip
+    (line,) = asking.of_net(net, lambda net: None)
+    assert line.startswith("FORMULA QuasiLiveness TRUE")
 
 
 def test_small_nets_are_unfolded_at_once(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@
                                      what collides in PyBullet, or cannot be done
                                      with a part, is never said to be right; in
                                      each fourth of them an arm is placed anew, and what is proved of its
-                                     new place is run as well
+                                     new place is run as well; --large: instead of that each is looked at as if it had
+                                     too many states, and the answers compared
 """
 
 from __future__ import annotations
@@ -19,8 +20,12 @@ import argparse
 import resource
 import sys
 import tempfile
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from random import Random
+from typing import Any
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 
@@ -35,9 +40,10 @@ from helpers.sighted_cells import sighted_cell
 from helpers.two_arm_cells import two_arm_cell
 from helpers.welding_cell import varied
 from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.check import Geometry, examine
-from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.pictures import draw
 from pn2code.geometry.placing.look import Request, look
 from pn2code.geometry.placing.search import Wish
@@ -71,6 +77,23 @@ def looked(cell: Path, traces: Path) -> Geometry:
     found = examine(with_inputs(opened, d), None, Limits(threads=cores()), traces, d)
     assert found is not None and not found.why, [i.message for i in d]
     return found
+
+
+def looked_as_large(cell: Path, traces: Path) -> Geometry:
+    """The same as if the cell had more states than are looked at: a net that does more decides (docs/geometry.md)."""
+
+    def cut(
+        partition: Partition,
+        storage: Mapping[str, str],
+        limits: Limits,
+        *rest: Any,
+        part: bool = False,
+    ) -> CellGraph | None:
+        few = limits if part else replace(limits, max_states=1)
+        return explore_cell(partition, storage, few, *rest, part=part)
+
+    with mock.patch("pn2code.geometry.check.explore_cell", cut):
+        return looked(cell, traces)
 
 
 def processor() -> float:
@@ -191,7 +214,14 @@ def random_cell(number: int) -> tuple[str, str]:
 
 
 def random_cells(
-    folder: Path, count: int, seed: int, walks: int, *, is_run: bool, step: int = 1
+    folder: Path,
+    count: int,
+    seed: int,
+    walks: int,
+    *,
+    is_run: bool,
+    step: int = 1,
+    large: bool = False,
 ) -> int:
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
@@ -211,7 +241,19 @@ def random_cells(
         if found.answer == "yes" and met:
             wrong += 1
             print(f"cell {number}: said yes, but {met}", flush=True)
-        if number % 4 == 0:
+        if large:
+            as_large = looked_as_large(cell, folder / f"{number}.large")
+            key = (f"{as_large.answer} (as a large cell)", "something" if met else "nothing")
+            said[key] = said.get(key, 0) + 1
+            if {as_large.answer, found.answer} == {"yes", "no"} or (
+                as_large.answer == "yes" and met
+            ):
+                wrong += 1
+                print(
+                    f"cell {number}: {found.answer}, {as_large.answer} as a large cell; {met}",
+                    flush=True,
+                )
+        elif number % 4 == 0:
             robot = arms.robots[-1].name
             answer, met = placed(cell, robot, folder / f"{number}.place", number, walks)
             key = (f"{answer} to another place", "something" if met else "nothing")
@@ -234,6 +276,9 @@ def main() -> int:
     parser.add_argument("--step", type=int, default=1, metavar="N", help="each Nth cell alone")
     parser.add_argument("--no-runs", dest="runs", action="store_false", help="random walks alone")
     parser.add_argument("--walks", type=int, default=5, metavar="N", help="of each random cell")
+    parser.add_argument(
+        "--large", action="store_true", help="random cells also as if they had too many states"
+    )
     parser.add_argument("--pictures", type=Path, metavar="DIR")
     options = parser.parse_args()
     if options.pairs:
@@ -247,6 +292,7 @@ def main() -> int:
                 options.walks,
                 is_run=options.runs,
                 step=options.step,
+                large=options.large,
             )
         if options.pictures:
             return pictures(Path(name), options.pictures)

@@ -214,9 +214,9 @@ def _comparison_of_one(
     get: Callable[[Any], Any],
 ) -> tuple[Callable[[Any, object], bool], Callable[[Any], int]]:
     def equal(self: Any, other: object) -> bool:
-        if other.__class__ is not self.__class__:
-            return NotImplemented
-        return bool((get(self),) == (get(other),))  # as tuples: what is no number is itself
+        # As tuples: what is no number is itself.
+        is_one = other.__class__ is self.__class__
+        return (get(self),) == (get(other),) if is_one else NotImplemented
 
     def hashed(self: Any) -> int:
         return hash((get(self),))

@@ -24,6 +24,7 @@ from pn2code.cli.options import (
     parse_values,
 )
 from pn2code.cli.replay_claims import Claims, claims, refuse
+from pn2code.cli.trace_progress import TraceProgress
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.report import places, time_text
 from pn2code.trace import replay as own
@@ -81,7 +82,8 @@ def replay(
                 result = repeat_own(trace, opened, files, claimed, form)
             else:
                 claimed = claims(opened, values, int_bits, any_digest=any_digest, form=form)
-                result = _own(trace, opened, files, claimed)
+                with TraceProgress(shown=not as_json) as progress:
+                    result = _own(trace, opened, files, claimed, progress.report)
     except typer.Exit as left:
         if as_json and left.exit_code == Exit.MODEL:
             typer.echo(json.dumps(_NOT_PLAYED, indent=1))
@@ -165,7 +167,13 @@ _NOT_COMPILED = (
 )
 
 
-def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> dict[str, Any]:
+def _own(
+    trace: Path,
+    opened: OpenNet,
+    files: Path | None,
+    claims: Claims,
+    progress: own.Progress,
+) -> dict[str, Any]:
     """A trace of our own, by the token game."""
     result = own.replay(
         trace,
@@ -177,6 +185,7 @@ def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> di
         notes=claims.notes,
         is_whole=True,
         files=Files(files),
+        progress=progress,
     )
     game = result.game
     return {

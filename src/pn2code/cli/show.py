@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from pn2code.base.os_reason import os_reason
-from pn2code.base.progress_line import Line
 from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -23,6 +21,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
+from pn2code.cli.trace_progress import TraceProgress
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 
@@ -203,7 +202,7 @@ def _trace(
         stop(d, form)
     storage = config.storage if config else {}
     try:
-        with playing(form), _Progress() as progress:
+        with playing(form), TraceProgress(plain=True) as progress:
             return traces.describe(
                 trace,
                 examined.document,
@@ -217,20 +216,6 @@ def _trace(
         _refuse(
             f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
         )
-
-
-class _Progress(Line):
-    """How far the trace is: steps, how many a second, and how long it still takes."""
-
-    def __init__(self) -> None:
-        super().__init__(first="repeating the trace ...", plain=True)
-        self._began = time.monotonic()
-
-    def report(self, steps: int, share: float) -> None:
-        """So many steps have been repeated, which is about this share of them."""
-        passed = max(time.monotonic() - self._began, 1e-9)
-        left = passed * (1.0 - share) / max(share, 1e-9)
-        self.say(f"{steps:,} steps, {steps / passed:,.0f} a second, about {left:.0f} s left")
 
 
 def _is_trace(trace: Path, form: Format) -> bool:

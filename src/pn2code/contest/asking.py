@@ -22,6 +22,7 @@ from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.unfold.plain import TooLargeError
 
 UNKNOWN = "CANNOT_COMPUTE"
@@ -166,12 +167,15 @@ class Asking:
 
 def is_large(net: FlatNet, game: Game) -> bool:
     """Whether unfolding a net takes a second or more, as far as the sizes of its colour sets say it."""
-    colours = game.colours
-    places = sum(colours.size(p.colset) for p in net.places)
-    bindings = sum(
-        prod(colours.size(s.colset) for s in t.variables if s.colset is not None)
-        for t in net.transitions
-    )
+    size = game.colours.size
+    try:
+        places = sum(size(p.colset) for p in net.places)
+        bindings = sum(
+            prod(size(s.colset) for s in t.variables if s.colset is not None)
+            for t in net.transitions
+        )
+    except (MlException, MlLimit):  # a colour set without bounds says nothing
+        return True
     return places > LARGE_PLACES or bindings > LARGE_BINDINGS
 
 

@@ -19,17 +19,21 @@ from itertools import islice
 from pn2code.base.frozen import frozen
 from pn2code.contest.engine import Answer, Said
 from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, Tokens, Truth
+from pn2code.contest.paths import Followed, next_value, path_of
 from pn2code.contest.tables import Tables
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import MlException, MlLimit
 
 TECHNIQUE = "COLOURED_WALK"
 _STEPS = 200
 """Of the first run; each one is longer than the one before."""
 _LONGEST = 1_000_000
 _LONGER = 1.5
+_MOST_FIRST = 1000
+"""Markings after the initial one that are looked at."""
 _CHOICES = 4
 """Bindings of a transition of which one is drawn."""
 
@@ -55,11 +59,15 @@ class Sought:
         number: of the question.
         holds: whether a marking is what is sought; None for a bound.
         sum: of a bound.
+        followed: a formula of paths.
+        is_linear: it is one of linear time: the opposite of its value is the answer.
     """
 
     number: int
     holds: Callable[[Sight], bool] | None
     sum: tuple[tuple[int, int], ...] = ()
+    followed: Followed | None = None
+    is_linear: bool = False
 
 
 class Play(threading.Thread):
@@ -89,13 +97,17 @@ class Play(threading.Thread):
         self.draw = random.Random(seed)
         self.is_over = threading.Event()
         self.most: dict[int, int] = {}
+        self.runs = 0
+        self.first: list[Sight] = []
+        self.is_first_whole = False
+        self.seen_first: set[int] = set()
 
     def run(self) -> None:
         """Run after run."""
         try:
             steps, is_even = float(_STEPS), False
             while self._goes_on():
-                self._run(int(steps), is_even)
+                self.play(int(steps), is_even=is_even)
                 steps, is_even = min(_LONGEST, steps * _LONGER), not is_even
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
@@ -107,41 +119,84 @@ class Play(threading.Thread):
     def _goes_on(self) -> bool:
         return not self.is_over.is_set() and time.monotonic() < self.ends
 
-    def _run(self, steps: int, is_even: bool) -> None:
+    def play(self, steps: int, *, is_even: bool) -> None:
         """One run; if it `is_even`, of the enabled transitions one that has occurred least is taken."""
         marking: Marking = self.game.own_initial_marking
         count: Counter[int] = Counter()
-        for _ in range(steps):
+        self.runs += 1
+        for at in range(steps):
             if not self._goes_on():
                 return
-            enabled = self.game.enabled_transitions(marking)
-            self._look(marking, enabled)
-            if not enabled:
-                return
-            self.draw.shuffle(enabled)
-            t = min(enabled, key=lambda t: count[t.index]) if is_even else enabled[0]
-            count[t.index] += 1
-            found = list(
-                islice(self.game.enabling.enabled(t, marking), self.draw.randint(1, _CHOICES))
-            )
             try:
-                marking, _ = self.game.occur(
-                    marking, BindingElement.make(t, self.draw.choice(found))
+                enabled = self.game.enabled_transitions(marking)
+                self._look(self._sight(marking, enabled), at)
+                if not enabled:
+                    return
+                self.draw.shuffle(enabled)
+                t = min(enabled, key=lambda t: count[t.index]) if is_even else enabled[0]
+                count[t.index] += 1
+                some = islice(
+                    self.game.enabling.enabled(t, marking), self.draw.randint(1, _CHOICES)
                 )
-            except GameError:  # a binding that raises an exception leads nowhere
+                element = BindingElement.make(t, self.draw.choice(list(some)))
+                marking, _ = self.game.occur(marking, element)
+            except (GameError, MlException, MlLimit):  # what raises an exception leads nowhere
                 return
 
-    def _look(self, marking: Marking, enabled: list[FlatTransition]) -> None:
-        sight = Sight(tuple(map(len, marking.places)), frozenset(t.id for t in enabled))
+    @staticmethod
+    def _sight(marking: Marking, enabled: list[FlatTransition]) -> Sight:
+        return Sight(tuple(map(len, marking.places)), frozenset(t.id for t in enabled))
+
+    def _look(self, sight: Sight, at: int) -> None:
         for sought in self.open():
             n = sought.number
-            if sought.holds is None:
+            if sought.followed is not None:
+                value = self._followed(sought, sought.followed, sight, at)
+                if value is not None:
+                    self.said.put(Answer(n, value != sought.is_linear, True, TECHNIQUE))
+            elif sought.holds is None:
                 total = sum(k * sight.tokens[p] for p, k in sought.sum)
                 if total > self.most.get(n, -1):
                     self.most[n] = total
                     self.said.put(Answer(n, total, False, TECHNIQUE))
             elif sought.holds(sight):
                 self.said.put(Answer(n, True, True, TECHNIQUE))
+
+    def _followed(self, sought: Sought, f: Followed, sight: Sight, at: int) -> bool | None:
+        if not f.path.is_next:
+            return f.on(self.runs, at, sight, is_last=not sight.enabled)
+        if at or sought.number in self.seen_first:
+            return None
+        self.seen_first.add(sought.number)
+        if not self.first:
+            self._look_first()
+        # What follows a dead marking: nothing in branching time, in linear time itself.
+        first = [sight] if sought.is_linear and not sight.enabled else self.first
+        return next_value(f.path, f.reach, first, is_all=self.is_first_whole)
+
+    def _look_first(self) -> None:
+        """The markings after the initial one, if they are not too many."""
+        marking = self.game.own_initial_marking
+        enabled = self.game.enabled_transitions(marking)
+        self.is_first_whole = True
+        for t in enabled:
+            for binding in self.game.enabling.enabled(t, marking):
+                if len(self.first) == _MOST_FIRST or not self._goes_on():
+                    self.is_first_whole = False
+                    return
+                try:
+                    after, _ = self.game.occur(marking, BindingElement.make(t, binding))
+                except (GameError, MlException, MlLimit):
+                    continue
+                self.first.append(self._sight(after, self.game.enabled_transitions(after)))
+
+
+def follow(tables: Tables, f: Formula) -> Followed | None:
+    """A formula of paths, to be followed along runs; None if it has not the form for that."""
+    path = path_of(f)
+    if path is None:
+        return None
+    return Followed(path, holds(tables, path.before), holds(tables, path.reach))
 
 
 def holds(tables: Tables, f: Formula) -> Callable[[Sight], bool]:

@@ -21,8 +21,9 @@ from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
+from pn2code.contest.paths import path_of
 from pn2code.contest.playing import TECHNIQUE as PLAYED
-from pn2code.contest.playing import Play, Sought, holds, said_in_words
+from pn2code.contest.playing import Play, Sought, follow, holds, said_in_words
 from pn2code.contest.structural import REDUCTION, Question, Structural, question, terms
 from pn2code.contest.tables import MOST, Tables
 from pn2code.contest.temporal import Reach, Temporal, Wanted, Whole
@@ -228,7 +229,9 @@ class _Portfolio:
                 place.question.is_done = True
 
     def _add(self, line: _Line, temporal: Temporal, wanted: Wanted) -> None:
-        if self.is_uncoloured and not isinstance(wanted, Reach):
+        if self.is_uncoloured and isinstance(wanted, Whole):
+            if path_of(wanted.formula) is not None:
+                self.places.append(_Place(line, Part("path", ""), 0, wanted=wanted))
             return
         try:
             kind = "reach" if isinstance(wanted, Reach) else temporal.kind
@@ -257,8 +260,15 @@ class _Portfolio:
             elif place.part.kind == "bound":
                 self.sought[n] = Sought(n, None, terms(words[1]))
             else:
-                self.sought[n] = Sought(n, lambda sight: False)
+                self.sought[n] = self._followed(n, place)
         return [s for n, s in self.sought.items() if self.places[n].is_open]
+
+    def _followed(self, number: int, place: _Place) -> Sought:
+        followed = None
+        if isinstance(place.wanted, Whole):
+            followed = follow(self.tables, place.wanted.formula)
+        is_linear = place.line.temporal is not None and place.line.temporal.kind == "ltl"
+        return Sought(number, lambda sight: False, followed=followed, is_linear=is_linear)
 
     def _can_be_asked(self, number: int) -> bool:
         """Whether the net knows of a question: without colours nothing of dead markings, and no bounds."""

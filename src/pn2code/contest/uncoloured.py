@@ -18,7 +18,10 @@ from pn2code.contest.tables import Tables
 from pn2code.ml.core.terms import Apply, Builtin, Exp, Lit, RecordExp
 from pn2code.net.flat import ArcInscription, ArcKind, FlatNet, FlatTransition, Form
 from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.colours import NotFinite
+from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.semantics.values.multiset import MultiSet
 
 MOST_VALUES = 2000
@@ -52,16 +55,17 @@ def uncoloured(net: FlatNet, game: Game) -> Tables | None:
                         side[arc.place] = side.get(arc.place, 0) + n
             pre.append({p: n for p, n in sides[0].items() if n})
             post.append({p: n for p, n in sides[1].items() if n})
-    except _VaryingError:
+        initial = game.own_initial_marking
+        at_first = frozenset(t.id for t in game.enabled_transitions(initial))
+    except (_VaryingError, GameError, MlException, MlLimit, NotFinite):
         return None
-    initial = game.own_initial_marking
     return Tables(
         tuple(map(len, initial.places)),
         tuple(pre),
         tuple(post),
         {name: (p.index,) for p in net.places for name, _ in p.member_ids},
         {t.id: (t.index,) for t in net.transitions},
-        at_first=frozenset(t.id for t in game.enabled_transitions(initial)),
+        at_first=at_first,
     )
 
 

@@ -244,7 +244,7 @@ class _Writer:
             rows += self.problems(scene, overlay)
         rows.append(
             f'<div class="sheet"><svg xmlns="http://www.w3.org/2000/svg" {svg_attributes(box)} '
-            f'style="--w:{_pixels(box)}px" role="img" aria-label="{escape(scene.name)}">'
+            f'style="--w:{_pixels(box)}px" role="group" aria-label="{escape(scene.name)}">'
         )
         return [*rows, *body, "</svg></div>", "</figure>"]
 

@@ -74,7 +74,7 @@ class InZones:
                     middle = (a + b) / 2.0
                     further += [(a, middle), (middle, b)]
             pieces = np.array(further).reshape(-1, 2)
-        return frozenset(said)
+        return frozenset({False, True} if track.trouble else said)
 
     def _shape(self, leg: Leg) -> ArmShape:
         if leg.robot not in self._shapes:

@@ -22,6 +22,8 @@ SAMPLES = 8
 """Steps within a piece."""
 SHORTEST = 1e-6
 """m and rad: a piece that is shorter, and still not known, is given up."""
+STRAIGHT = 1e-3
+"""The same of a way on which the wrist is straight somewhere: there, it is never known."""
 
 
 class Follower:
@@ -32,6 +34,7 @@ class Follower:
         self.trouble = ""
         self._speed = float(np.hypot(np.hypot(path.line.length, path.line.angle), path.swivel))
         self._steep = _steepness(kinematics)
+        self._shortest = STRAIGHT if path.is_straight else SHORTEST
         self._planned = path.way(path.times)
 
     def pieces(self, a: Array, b: Array) -> tuple[Array, Array]:
@@ -49,7 +52,7 @@ class Follower:
         middle = q[:, SAMPLES // 2]
         away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
         away[~is_fine] = np.inf
-        lost = ~is_fine & ((b - a) * self._speed < SHORTEST)
+        lost = ~is_fine & ((b - a) * self._speed < self._shortest)
         if lost.any():
             self.trouble = (
                 f"the {self._path.line.name} passes so near to a singularity that what lies between samples is not "

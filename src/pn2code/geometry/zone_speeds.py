@@ -85,6 +85,7 @@ def slow_enough(watch: ZoneWatch, track: Track, load: Load) -> tuple[Verdict, st
             else:
                 further += [(a, middle), (middle, b)]
         pieces = np.array(further).reshape(-1, 2)
+    unknown = unknown or track.trouble
     return ("unknown", unknown) if unknown else ("yes", "")
 
 

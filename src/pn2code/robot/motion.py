@@ -416,6 +416,11 @@ class LinearTrajectory:
         """What an axis would have to do at once where the wrist is straight."""
         return None if self._straight is None else self._straight.leap
 
+    @property
+    def is_straight(self) -> bool:
+        """Whether the wrist is straight somewhere on the way."""
+        return self._straight is not None and len(self._straight.at) > 0
+
     def rows(self, s: Array) -> Array:
         """Joint positions at fractions of the way, axes that turn in (-pi, pi].
 

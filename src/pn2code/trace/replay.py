@@ -137,6 +137,10 @@ class _Wrong(Exception):  # noqa: N818
     """A line cannot be repeated; the message says why."""
 
 
+Progress = Callable[[int, float], None]
+_TOLD_LINES = 500
+
+
 @frozen
 class Rules:
     """How strictly a trace is read.
@@ -167,6 +171,7 @@ def replay(
     is_whole: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
+    progress: Progress | None = None,
 ) -> ReplayResult:
     """Replays a trace file.
 
@@ -183,10 +188,12 @@ def replay(
         is_whole: whether each line must have all the members that docs/trace.md says, and no others.
         limits: of each evaluation.
         files: what the net can do with files; nothing by default.
+        progress: is called now and then with how many lines have been read, and which share of the file.
     """
     with path.open(encoding="utf-8", errors="replace") as lines:
+        size = path.stat().st_size
         return replay_lines(
-            lines,
+            lines if progress is None else _told(lines, size, progress),
             net,
             storage,
             rules=rules,
@@ -200,6 +207,15 @@ def replay(
             files=files,
             loop=claimed_loop(path),
         )
+
+
+def _told(lines: Iterable[str], size: int, progress: Progress) -> Iterator[str]:
+    read = 0
+    for number, text in enumerate(lines):
+        read += len(text)
+        if number % _TOLD_LINES == 0 and number:
+            progress(number, min(read / max(size, 1), 1.0))
+        yield text
 
 
 def replay_lines(

@@ -12,6 +12,7 @@ from helpers.tool_cell import TOML, placed
 from pn2code.arms import Arms
 from pn2code.replay.cell import at_start, describe, put, tool_in_use
 from pn2code.robot.commands import (
+    Along,
     Handling,
     MoveHome,
     MoveJoint,
@@ -21,7 +22,7 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
-from pn2code.robot.parts import PartFault, Parts
+from pn2code.robot.parts import PartFault, Parts, carried_to
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones import ZoneWatch
@@ -177,6 +178,30 @@ def test_an_increment_is_one_of_the_tool_in_use(cell: RobotCell) -> None:
     robot = executor.robot
     tip = robot.T_world_base @ robot.tcps["driver"].forward(executor.q)
     assert tip[:3, 3] == pytest.approx([1.0, 0.0, 0.7], abs=1e-9)
+
+
+def test_on_a_track_and_with_a_tool_that_stays_on_the_flange(tmp_path: Path) -> None:
+    """The coupling is the TCP of what stays there, wherever the track has carried the arm."""
+    toml = TOML.replace("tools = [", 'tool = "counterpoint"\ntools = [').replace(
+        "[robots.arm.tcps.coupling]",
+        "[robots.arm.tcps.coupling]\nz = 0.5\n"
+        "[robots.arm.axes.rail]\ndirection = [0.0, 1.0, 0.0]\nfrom = -1.0\nto = 1.0",
+    )
+    cell = read(tmp_path, toml)
+    there = (Along("rail", -0.5, is_track=True),)
+    goal = MoveLinear(Pose(0.9, -0.5, 0.9, DOWN, 0.0, 0.0), along=there)
+    executor = after(
+        cell, lock("driver"), MoveJoint(Pose(0.9, -0.5, 1.0, DOWN, 0.0, 0.0), along=there), goal
+    )
+    robot = executor.robot
+    coupling = robot.T_world_base @ executor.T_base_tcp
+    assert coupling[:3, 3] == pytest.approx([0.9, -0.5, 0.9 + 0.28], abs=1e-6)
+    assert robot.of_tool("driver", coupling)[:3, 3] == pytest.approx([0.9, -0.5, 0.9], abs=1e-6)
+    assert robot.tcps["coupling"].T_flange_tcp == pytest.approx(robot.kinematics.T_flange_tcp)
+    parts = Parts(cell)
+    parts.handle("arm", LOCK["driver"], RIGHT)
+    held = carried_to(robot, executor.q, parts.present["driver"])
+    assert held == pytest.approx(coupling, abs=1e-6)
 
 
 @pytest.mark.parametrize(

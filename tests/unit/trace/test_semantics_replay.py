@@ -90,6 +90,18 @@ def test_the_reference_trace_is_accepted(net: FlatNet) -> None:
     assert result.message() == "2 steps, each enabled when its turn came, ended: finished"
 
 
+def test_how_far_it_is_is_told(
+    net: FlatNet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pn2code.trace.replay._TOLD_LINES", 2)
+    file = tmp_path / "x.trace.jsonl"
+    file.write_text("".join(f"{line}\n" for line in lines(net)), encoding="utf-8")
+    told: list[tuple[int, float]] = []
+    assert replay(file, net, progress=lambda steps, share: told.append((steps, share))).ok
+    [(steps, share)] = told
+    assert steps == 2 and 0.5 < share < 1
+
+
 def test_a_trace_may_stop_and_have_notes(net: FlatNet) -> None:
     note = json.dumps({"t": 0.5, "event": "tool", "robot": "robot1", "action": "drill"})
     written = lines(net)

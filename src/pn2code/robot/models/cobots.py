@@ -54,7 +54,7 @@ COBOTS = (
     CobotSpec(
         "ur10e", 0.1807, 0.6127, 0.57155, 0.17415, 0.11985, 0.11655, 0.176, 0.039,
         (0.085, 0.068, 0.052), (120, 120, 180, 180, 180, 180), 12.5,
-        "payload by Universal Robots (10 kg with full acceleration)",
+        "payload by a list of others, of today's ur10e (before: 10 kg, so with full acceleration)",
     ),
     CobotSpec(
         "ur5e", 0.1625, 0.425, 0.3922, 0.1333, 0.0997, 0.0996, 0.138, 0.007,

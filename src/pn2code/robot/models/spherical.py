@@ -117,7 +117,7 @@ SPHERICAL = (
         "yellow",
         held(
             "limits and speeds by FANUC, B-83494EN/03, as in fanuc_lrmate200id_support (axis 3: its span "
-            "of 420 degrees); payload by FANUC's product page; moments by nothing"
+            "of 420 degrees); payload by FANUC's product page, as others quote it; moments by nothing"
         )
         + _payload(7, "16.6 16.6 9.4")
         # The maker counts axis 3 from the horizontal: where axis 2 moves alone, the forearm keeps its direction.

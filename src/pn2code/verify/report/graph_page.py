@@ -37,7 +37,7 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
     picture = "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" {svg_attributes(box.grown(MARGIN))} '
-            'role="img" aria-label="state space">',
+            'role="group" aria-label="state space">',
             *body,
             "</svg>",
         ]
