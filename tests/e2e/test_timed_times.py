@@ -66,6 +66,16 @@ def test_runs_of_random_timers_keep_the_bounds(seed: int, tmp_path: Path) -> Non
     assert not list(waits.contradictions(measured[0], random, made))
 
 
+def test_a_script_waits_for_its_control_token_alone(tmp_path: Path) -> None:
+    """What it notes with a later time stamp, where nobody reads, keeps it from nothing."""
+    net = timer_cell.NET.replace(
+        "      out Thinking : ()@+c\n", "      out Thinking : ()@+c\n      out Log : ()@+8\n"
+    ).replace("    place Thinking : T\n", "    place Thinking : T\n    place Log : T\n")
+    cycle = times.cycle_of(timer_cell.write(tmp_path / "cell", net=net))
+    assert cycle is not None and not cycle.why
+    assert (cycle.row()["least_s"], cycle.row()["most_s"]) == (5.999, 14.001)
+
+
 def test_within_seconds_counts_timers_and_waits(tmp_path: Path) -> None:
     cell = timer_cell.write(tmp_path / "cell")
     asked = [x for n in ("6", "5") for x in ("--property", ANSWERED.format(n))]
