@@ -14,10 +14,10 @@ order. Wherever the former is in a state with marking m (of the places of the ce
 robots and devices can do in that state with which values is enabled in m|.
 
 P are places that only transitions of the supervisor touch, none of them a channel, and no expression that goes with
-them (of their arcs, of their initial marking) changes a reference, on which others may depend. Each run of the cell as it runs is,
-without the steps of programs, an occurrence sequence of the closed net in which priorities count among the transitions
-of an owner (`running`), hence one of the closed net without priorities. For each occurrence e that leads there from m
-to m', by induction:
+them (of their arcs, of their initial marking) changes a reference, on which others may depend. Each run of the cell as
+it runs is, without the steps of programs, an occurrence sequence of the closed net in which priorities count among the
+transitions of an owner (`running`), hence one of the closed net without priorities. For each occurrence e that leads
+there from m to m', by induction:
 
 * *e is enabled in m|.* A transition asks the same of m and of m|, or less if it had arcs from P. A variable for which
   nothing is left that binds it takes all values of its colour set, among them the one that it has in e, since no
