@@ -112,7 +112,9 @@ ASIDE = TOML.replace("[places.inVice]\nx = 1.0\n", "[places.inVice]\nx = 1.0\ny 
 EMPTY = ASIDE.replace('holds = "inVice"', 'holds = "inVice"\nmay_be_empty = true')
 
 
-@pytest.mark.parametrize(("toml", "why"), [(ASIDE, "`blank.1`, is 10.0 mm away"), (EMPTY, "")])
+@pytest.mark.parametrize(
+    ("toml", "why"), [(ASIDE, "`blank.1`, in the tool of `arm`, is 10.0 mm away"), (EMPTY, "")]
+)
 def test_a_clamp_that_closes_on_nothing_stops_a_run(toml: str, why: str, tmp_path: Path) -> None:
     """In `TOML`, with which other runs finish, the arm holds the blank there."""
     d = Diagnostics()

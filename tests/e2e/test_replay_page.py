@@ -505,14 +505,15 @@ def test_tools_in_use_and_clamps_are_told(tmp_path: Path, chromium: Any) -> None
     unit = run["cell"]["robots"][0]["base"]
     in_world = {"frame": unit, "holder": ""}
     held = {"frame": unit, "holder": "arm"}
+    coupled = [{"t": 0.0, **in_world}, {"t": 2.0, **held}, {"t": 5.0, **in_world}]
     run["cell"] |= {
         "kinds": {"cup": [], "part": []},
         "tools": {"cup": [*unit[:3], 0.25, *unit[4:]]},
         "parts": [
             {"name": "part.1", "kind": "part", "states": [{"t": 0.0, **held}]},
-            {"name": "cup", "kind": "cup", "states": [{"t": 0.0, **in_world}, {"t": 2.0, **held}, {"t": 5.0, **in_world}]},
+            {"name": "cup", "kind": "cup", "states": coupled},
         ],
-    }  # fmt: skip
+    }
     run["cell"]["robots"][0]["changes"] = True
     jaws = [
         {"parent": 0, "child": k, "frame": unit, "axis": [1, 0, 0], "moves": k - 1, "slides": True}
@@ -529,7 +530,14 @@ def test_tools_in_use_and_clamps_are_told(tmp_path: Path, chromium: Any) -> None
             browser.ask("t => replay.seek(t)", t)
             words = " ".join(said.nth(0).inner_text().split())
             assert words == f"arm rests · {tool} · TCP {reach:.1f} 0.0 0.0 mm"
-        assert said.nth(1).inner_text().split("·")[1].split() == "door 900.0 mm vice 110.0 mm".split()
+        assert said.nth(1).inner_text().split("·")[1].split() == [
+            "door",
+            "900.0",
+            "mm",
+            "vice",
+            "110.0",
+            "mm",
+        ]
         assert browser.errors == []
 
 

@@ -35,7 +35,7 @@ class Move:
 
     Args:
         robot, transition: who does it, and the (first) transition that commands it.
-        command: in words; begins: the TCP pose where it begins, in words.
+        command: in words; begins: the TCP pose where it begins, in words; of a device its axes.
         kind: "ptp", "lin", or what an arm does that stands.
         answer: whether it can be done; problem: why not, or why it is not known.
         limit: deg, the least distance from a limit of an axis; axis: which one (from 1).

@@ -24,6 +24,7 @@ from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
+from pn2code.geometry.where import stands_at
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
@@ -219,9 +220,7 @@ class Look:
         t, owner = _who(found, met.elements[0])
         begins = ""
         if activity.end is not None:
-            base = self.cell.robot(owner).T_world_base
-            own = self.cell.robot(owner).of_tool(activity.end.tool, activity.end.T_base_tcp)
-            begins = numbers(pose_of(base @ own))
+            begins = stands_at(self.cell.robot(owner), activity.end)
         does = words(activity.command)
         run = self._run(found, met)
         answer: Verdict = "no" if activity.is_part else "unknown"
@@ -230,10 +229,7 @@ class Look:
 
     def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
-        base = self.cell.robot(leg.robot).T_world_base
-        robot = self.cell.robot(leg.robot)
-        own = robot.of_tool(leg.start.tool, leg.start.T_base_tcp)
-        begins = numbers(pose_of(base @ own))
+        begins = stands_at(self.cell.robot(leg.robot), leg.start)
         held = [p for p in load if p.holder]
         does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
         if on_it := sum(p.up is not None for p in held):
