@@ -108,7 +108,8 @@ class Look:
         began = time.perf_counter()
         found = self.situations(self.graph)
         seen = self.seen(found)
-        touching = [sides for sides, pair in seen.arms.items() if pair.answer == "no"]
+        bad = {sides: pair for sides, pair in seen.arms.items() if pair.answer == "no"}
+        touching = [sides for sides, pair in bad.items() if not pair.is_held]
         explore = self.options.explore
         zones = None
         if touching and explore is not None:
@@ -311,11 +312,18 @@ class Look:
         for leg, other, apart in self.comparison.activities(a, b):
             if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
                 first, second = (_who(found, e)[0] for e in met.elements)
-                does = (words(leg.command), words(other.command))
+                does = (self._does(leg), self._does(other))
                 robots = (leg.robot, other.robot)
                 met_[sides] = _Meeting(robots, (first, second), does, apart, met)
             if apart.outcome == "touch":
                 break
+
+    def _does(self, leg: Leg) -> str:
+        """A command in words; of what is at rest where it stands."""
+        if leg.command is not None:
+            return words(leg.command)
+        where = stands_at(self.cell.robot(leg.robot), leg.start)
+        return f"stands at {where}" if where else "stands"
 
     def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
@@ -410,6 +418,7 @@ def _met(
         tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
         run,
         least=_most_in(apart) if is_touch else None,
+        is_held=is_touch and bool(apart.why),
     )
 
 

@@ -139,6 +139,8 @@ def _bad_pair(p: Pair) -> Iterator[str]:
     for robot, does in zip(p.robots, p.doing, strict=True):
         yield f"  {robot or 'part'}: {does}"
     yield f"  {p.says}"
+    if p.is_held:
+        yield "  let the net command that the clamp opens, and wait for the answer, before the part is taken away"
     yield from _run(p.run)
     if p.picture:
         yield f"  picture: {p.picture}"
