@@ -32,7 +32,7 @@ class Apart:
         least: m, that is certain: where they touch, nothing overlaps by more than -least (-inf: nothing is certain).
         nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
         where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
-        why: of "open".
+        why: of "open"; of a touch that a clamp holds what the other thing takes along.
         is_whole: whether the deepest overlap was searched for; False: this one was met first.
     """
 

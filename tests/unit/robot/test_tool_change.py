@@ -314,7 +314,10 @@ def test_a_tool_in_use_is_in_zones(tmp_path: Path) -> None:
 def test_what_the_replay_page_is_told(tmp_path: Path) -> None:
     """A tool is one kind of things, with the shapes of all links; one that is in use hangs at the coupling."""
     cell = read(tmp_path, TOML.replace("tools = [", 'begins_with = "driver"\ntools = ['))
-    body, bit = describe(cell)["kinds"]["driver"]
+    described = describe(cell)
+    assert described["robots"][0]["changes"] is True
+    assert np.array(described["tools"]["driver"]).reshape(4, 4)[2, 3] == pytest.approx(0.28)
+    body, bit = described["kinds"]["driver"]
     assert np.array(body[1]).reshape(4, 4)[2, 3] == pytest.approx(0.08)
     assert np.array(bit[1]).reshape(4, 4)[2, 3] == pytest.approx(0.16 + 0.06)
     start = at_start(cell)
