@@ -345,7 +345,9 @@ class _Symmetric(_Small):
             v, w = f"v{kind.name}", f"w{kind.name}"
             guard = f"{v} {r.choice(('=', '<>'))} {w}"
             taken_there = {arc.partition(" : ")[2] for arc in arcs if arc.startswith("in ")}
-            if "=" in guard and not {v, w} & taken_there:  # an equation binds only from what is bound
+            if (
+                "=" in guard and not {v, w} & taken_there
+            ):  # an equation binds only from what is bound
                 guard = f"not ({v} <> {w})"
             self.lines.append(f"{indent}  guard [{guard}]")
         self.lines += [f"{indent}  {arc}" for arc in arcs]
