@@ -264,6 +264,42 @@ static void test_moves(void)
     pn_moves_put(&moves, &small, &four, 1, PN_NO_TIME);
     CHECK(!pn_moves_commit(&moves, &m));
     CHECK(cx.error == PN_ERR_COLOUR);
+    CHECK(is_text(cx.error_name, "illegal colour 4: it is not in the colour set `SMALL`"));
+    CHECK(is_text(cx.error_origin, "place `Plain`"));
+}
+
+/* What is said of a value: on one line, and so much that it stays a sentence. */
+static void test_colours_that_are_said(void)
+{
+    static const char s_long[] = "a long name of a colour set, which goes on and on until it is longer than is said";
+    static const pn_type_t word = { .kind = PN_KIND_STRING, .name = s_long, .size = sizeof(pn_string_t) };
+    char text[1000];
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    pn_arena_init(&arena, NULL, 0U);
+    pn_ctx_init(&cx, &arena, 1U);
+    (void)memset(text, 'x', sizeof text);
+    (void)memcpy(&text[100], "\n\"\t\303\244", 5U);
+    pn_string_t value = { text, 120U };
+    pn_raise_colour(&cx, &word, &value);
+    CHECK((cx.error == PN_ERR_COLOUR) && (strncmp(cx.error_name, "illegal colour \"xxx", 19U) == 0));
+    CHECK(strstr(cx.error_name, "xx?\"?\303\244xxxxxxxxxxxxxxx\": it is not in") != NULL);
+    CHECK(strstr(cx.error_name, "it is not in the colour set `a long name of") != NULL);
+    CHECK(strstr(cx.error_name, "...`") != NULL);
+    for (uint32_t start = 100U; start < 130U; start++) { /* wherever it is cut, no character is cut in two */
+        (void)memset(text, 'x', sizeof text);
+        for (uint32_t i = start; i < 200U; i += 2U) {
+            (void)memcpy(&text[i], "\303\244", 2U);
+        }
+        value.length = sizeof text;
+        pn_clear_error(&cx);
+        pn_raise_colour(&cx, &word, &value);
+        CHECK((strstr(cx.error_name, "\303\244...: it is not in") != NULL)
+              || ((start > 120U) && (strstr(cx.error_name, "x...: it is not in") != NULL)));
+        CHECK(strlen(cx.error_name) < PN_SAID_SIZE);
+    }
+    pn_raise(&cx, PN_ERR_DIV, NULL); /* the first error counts */
+    CHECK(cx.error == PN_ERR_COLOUR);
 }
 
 /* Numbers as bytes: what is read is what was written, in the shortest form, which is the only one that is read. */
@@ -396,6 +432,7 @@ int main(int argc, char **argv)
     test_arena();
     test_moves();
     test_arrivals();
+    test_colours_that_are_said();
     test_bytes();
     test_trace();
     (void)puts((s_failures == 0) ? "ok" : "failed");

@@ -86,7 +86,7 @@ def test_an_occurrence_counts_itself(tmp_path: Path) -> None:
 def test_a_run_that_ends_in_an_exception(tmp_path: Path) -> None:
     trace, done = dry_run(RAISES, tmp_path)
     assert done.returncode == 1
-    assert "a value is not in the colour set" in done.stderr
+    assert "illegal colour [0,1,2]: it is not in the colour set `SHORT`" in done.stderr
     net = flat(RAISES)
     assert replay(trace, net).steps == 3
     assert replay(trace, net).ok, replay(trace, net).why

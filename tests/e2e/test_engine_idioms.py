@@ -25,7 +25,11 @@ KEPT = answers()
 STATES = {"agrees", "random", ""}
 REFERENCES = {"GlobrefLists", "StatisticsReals"}
 """The engine does not restore references, so that the sizes that it finds depend on the order of its search."""
-COMPILED = sorted(name for name in NETS if "space" in KEPT[name] and name not in REFERENCES)[
+OCCURRING = {"InstanceNumbers", "InstanceCoefficients"}
+"""When a transition occurs, the engine's state-space tool has another value for `inst ()` than its simulator: that of
+an instance that it looked at before."""
+OTHER_SPACE = REFERENCES | OCCURRING
+COMPILED = sorted(name for name in NETS if "space" in KEPT[name] and name not in OTHER_SPACE)[
     :: 1 if THOROUGH else 12
 ]
 ENGINE_FAILS = {"LetInArc", "GuardSquare"}
@@ -64,7 +68,7 @@ def test_what_the_engine_says(name: str, seen: Seen) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in NETS if "space" in KEPT[name] and name not in REFERENCES]
+    "name", [name for name in NETS if "space" in KEPT[name] and name not in OTHER_SPACE]
 )
 def test_the_size_of_the_state_space(name: str, seen: Seen) -> None:
     kept = KEPT[name]["space"]

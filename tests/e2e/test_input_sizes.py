@@ -192,7 +192,9 @@ def test_the_arena_has_room_for_what_the_file_needs(
         "guard [n = 0]", "guard [n < 100]"
     )
     net = net.replace("n - 1", "n - length (up n)")
-    net = net.replace("  var k", "  fun up n = if n = 0 then [] else (n, n, n, n) :: up (n - 1);\n  var k")
+    net = net.replace(
+        "  var k", "  fun up n = if n = 0 then [] else (n, n, n, n) :: up (n - 1);\n  var k"
+    )
     folder = cell(tmp_path / "cell", "35000\n", net)
     done = pn2code("verify", folder, "--no-medium", "--json")
     (check,) = (c for c in json.loads(done.stdout)["controller"] if c["check"] == "memory")

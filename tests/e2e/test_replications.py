@@ -71,6 +71,45 @@ def test_averages_of_single_runs(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+def test_a_simulation_without_values_counts_as_zero_and_that_is_said(tmp_path: Path) -> None:
+    """As in the engine of CPN Tools: of two simulations, one with the value 7, the other without any, its variables for
+    independent observations say count 0.5, min 3.5 and 0 at the least, avrg 3.5."""
+    sometimes = """
+net Sometimes
+  standard
+  var i : INT;
+  place Start : INT = 1`0
+  place Drawn : INT
+  place Seen : INT
+  trans Draw
+    in Start : i
+    out Drawn : discrete (0, 1)
+  trans See guard [i = 1]
+    in Drawn : i
+    out Seen : i
+"""
+    seven = {
+        "Predicate": "fun pred bindelem = true", "Observer": "fun obs bindelem = 7",
+        "Init function": "fun init () = NONE", "Stop": "fun stop () = NONE",
+    }  # fmt: skip
+    net = made(tmp_path, sometimes, Spec("Sevens", "Data collection", ["Queue.See"], seven))
+    page, counts, seed = tmp_path / "page.html", [0, 0], 0
+    while sorted(counts) != [0, 1]:
+        seed += 1
+        text = simulated(net, "--replications", "2", "--seed", str(seed), "--json").stdout
+        said: dict[str, Any] = json.loads(text)
+        counts = [s["monitors"][0]["count"] for s in said["simulations"]]
+    found = said["collectors"][0]
+    assert found["without_values"] == 1
+    assert found["statistics"]["count"]["avg"] == 0.5
+    assert found["statistics"]["min"]["avg"] == found["statistics"]["avrg"]["avg"] == 3.5
+    assert found["statistics"]["min"]["min"] == 0
+    shown = simulated(net, "--replications", "2", "--seed", str(seed), "--report", str(page))
+    note = "In 1 of 2 simulations it saw no value: each of its statistics counts as 0 there"
+    assert note in shown.stdout and note in page.read_text(encoding="utf-8")
+    assert "saw no value" not in simulated(made(tmp_path), "--replications", "2").stdout
+
+
 @pytest.mark.cc
 def test_the_net_is_made_ready_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     net, made_ready, generated = made(tmp_path), [], programs.generated

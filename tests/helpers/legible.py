@@ -39,10 +39,13 @@ _ASK = """least => {
   for (const id of new Set(ids.filter((id, i) => ids.indexOf(id) !== i))) found.push(`twice: ${id}`);
   for (const name of ["aria-controls", "aria-labelledby", "aria-describedby", "for"]) {
     for (const node of document.querySelectorAll(`[${name}]`)) {
-      if (!document.getElementById(node.getAttribute(name))) found.push(`${name} leads nowhere: ${node.outerHTML.slice(0, 100)}`);
+      const there = document.getElementById(node.getAttribute(name));
+      if (!there) found.push(`${name} leads nowhere: ${node.outerHTML.slice(0, 100)}`);
     }
   }
-  for (const node of document.querySelectorAll("img:not([alt]), iframe:not([title])")) found.push(`no words: ${node.outerHTML.slice(0, 100)}`);
+  for (const node of document.querySelectorAll("img:not([alt]), iframe:not([title])")) {
+    found.push(`no words: ${node.outerHTML.slice(0, 100)}`);
+  }
   for (const node of document.querySelectorAll("body *:not(svg *, script, style)")) {
     const hasText = [...node.childNodes].some((c) => c.nodeType === 3 && c.textContent.trim());
     if (!hasText || !isSeen(node) || node.disabled) continue;

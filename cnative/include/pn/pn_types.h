@@ -48,11 +48,14 @@ typedef enum pn_error {
 
 struct pn_arena;
 
+/* Longest text about a value that raised an error, terminator included. */
+#define PN_SAID_SIZE 256U
+
 /* What an evaluation needs: where values are allocated, and the first error. */
 typedef struct pn_ctx {
     struct pn_arena *arena;
     pn_error_t error;
-    const char *error_name;   /* "Overflow", or the exception's name */
+    const char *error_name;   /* "Overflow", or the exception's name; of PN_ERR_COLOUR what is wrong */
     const void *exception;    /* the exception as a value, in the arena; NULL: its name says it all */
     const char *error_origin; /* net element being evaluated when it was raised */
     const char *origin;       /* net element being evaluated now */
@@ -63,6 +66,7 @@ typedef struct pn_ctx {
     uint64_t step;            /* number of occurrences so far, for step(); the host counts */
     uint64_t seed;            /* of all random numbers of the run */
     uint64_t random;          /* state of the generator for CS.ran() and the distributions; see pn_random.h */
+    char said[PN_SAID_SIZE];  /* what error_name is, where it says a value */
 } pn_ctx_t;
 
 /* An element of the net is evaluated from here on. */

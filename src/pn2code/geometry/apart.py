@@ -56,7 +56,11 @@ class Standing:
         link = Link.of(part.name, 0, part.frame, *box)
         self.names = {part.name: 0}
         self.radii = np.array([link.radius])
-        self._knots = Knots(np.zeros((1, 6)), link.ends[None, None], np.zeros((1, 1)))
+        never = np.zeros(1, bool)
+        self._knots = Knots(np.zeros((1, 6)), link.ends[None, None], np.zeros((1, 1)), never)
+
+    def begin(self) -> None:
+        """A question begins."""
 
     def knots(self, a: Array, b: Array) -> Knots:
         """Always the same."""

@@ -615,6 +615,10 @@ class Elaborator:
         """A new symbol, which no text can mention by its name unless it is declared for it."""
         return self._ctx.fresh_symbol(name, t)
 
+    def another(self, symbol: Symbol) -> Symbol:
+        """A symbol that differs from this one, and is like it in all else."""
+        return replace(symbol, uid=self._ctx.fresh_symbol(symbol.name, symbol.type).uid)
+
     def condition(
         self,
         text: SourceText,
@@ -678,6 +682,11 @@ class Elaborator:
             return Computed(value)
         what = "is not a constant that can be computed here"
         return Computed(None, f"{what}: {why}" if why else what)
+
+    @property
+    def mentions_instances(self) -> bool:
+        """Whether an inscription so far uses `inst`."""
+        return self._ctx.mentions_instances
 
     def tokens(self, exp: core.Exp, is_token: bool) -> Counter[Any] | None:
         """The tokens of an initial marking, which is one of them or a multi-set; None when they cannot be said."""

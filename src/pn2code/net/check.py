@@ -20,7 +20,14 @@ from pn2code.ml.core.types import INT, Type, list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parsing.parser import declared_names, odd_declaration
 from pn2code.ml.parsing.plain_text import plain_names
-from pn2code.net import engine_guards, infix_names, initial_effects, reserved_words, space_names
+from pn2code.net import (
+    engine_guards,
+    infix_names,
+    initial_effects,
+    instance_numbers,
+    reserved_words,
+    space_names,
+)
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -236,6 +243,10 @@ class _Checker:
             colsets = {c.name: c.origin for c in self.net.declarations if isinstance(c, RawColset)}
             space_names.warn(self.program, colsets, self.d)
             initial_effects.warn(self.program, pages, self.d)
+        with_instance: frozenset[str] = frozenset()
+        if self.elaborator.mentions_instances:
+            instance_numbers.warn(pages, self.d)
+            with_instance = instance_numbers.mentioning(pages)
         return TypedNet(
             net=self.net,
             program=replace(self.program, datatypes=self.elaborator.datatypes()),
@@ -244,6 +255,7 @@ class _Checker:
             fusions=self.net.fusions,
             real_time=self.net.real_time,
             elaborator=self.elaborator,
+            with_instance=with_instance,
         )
 
     def page(self, page: Page) -> TypedPage:

@@ -243,6 +243,13 @@ INITIAL_EFFECT = register(
     "order of its own and those of fusion sets once more. A marking that counts in a reference, 1`(tick ()), is "
     "different each time. pn2code evaluates every initial marking once, in the order of the file.",
 )
+INITIAL_INSTANCE = register(
+    "initial-marking-instance",
+    "an initial marking uses the number of the page instance",
+    "In arcs, guards, delays and code segments `inst ()` is the number of the page instance. When CPN Tools makes the "
+    "initial marking it has another value, the same for all instances of a page: mostly their number and 1. In pn2code "
+    "it is the number of the instance there, too.",
+)
 SPACE_NAME = register(
     "state-space-name",
     "a name of the net hides one that the state-space tool of CPN Tools uses",

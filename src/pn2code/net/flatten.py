@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.codes import FUSION_MISMATCH, NET_TOO_LARGE, PORT_COLSET, PORT_INITIAL
@@ -27,14 +27,16 @@ from pn2code.net.flat import (
     Form,
     PlaceInstance,
 )
+from pn2code.net.instance_numbers import numbered
 from pn2code.net.instances import PageInstance, expand, measure, unique_names
-from pn2code.net.typed import TypedNet, TypedPlace
+from pn2code.net.typed import TypedNet, TypedPlace, TypedTransition
 
 MAX_ELEMENTS = 500_000
 """Places and transitions of a flat net."""
 MAX_DEPTH = 1_000
 """Pages one below the other."""
 
+Node = TypeVar("Node", TypedPlace, TypedTransition)
 Key = tuple[int, str]
 """A place instance: index of the page instance, place id."""
 
@@ -281,7 +283,7 @@ class _Flattener:
                     instance_number=instance.number,
                     id=first.id,
                     colset=first.colset,
-                    initial=first.initial,
+                    initial=self.on(instance, first).initial,
                     origins=tuple(
                         replace(self.typed[k].origin, instance=self.instances[k[0]].path)
                         for k in group
@@ -290,6 +292,13 @@ class _Flattener:
                 )
             )
         return found
+
+    def on(self, instance: PageInstance, node: Node) -> Node:
+        """A place or transition, typed for all instances of its page, on one of them."""
+        if node.id not in self.net.with_instance:
+            return node
+        assert self.net.elaborator is not None  # it has typed them
+        return numbered(node, instance.number, self.net.elaborator.another)
 
     def transitions(self, group_of: dict[Key, int]) -> list[FlatTransition]:
         found: list[FlatTransition] = []
@@ -303,7 +312,7 @@ class _Flattener:
         document = self.net.net.document
         captions = {t.id: t.caption for page in document.pages for t in page.transitions}
         for instance in self.instances:
-            for t in instance.page.transitions:
+            for t in (self.on(instance, one) for one in instance.page.transitions):
                 arcs = tuple(
                     FlatArc(
                         id=a.id,

@@ -54,17 +54,17 @@ newnodenum next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef
 nodesWithoutPredecessors nodesWithoutSuccessors nodesflat nonlocalfus num_of_insts o ogpath outarcs
 outnodes outtimed page pagename partfuncount patterncount patternetc pgglobfuschng pgmlno pgname
 pgno pgstr place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr plname pltree
-port portinstances portmlid prime ps recname recreflist refstore remdupl rest rev right root root1
+port portinstances portmlid prime ps recname recreflist refstore remdupl rest result rev right root root1
 root2 root_bf root_key root_left root_left_bf root_left_right root_left_right_bf root_right
 root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp sccsWithoutSuccessors secs
-siminst simplace socketid socketinst srcinfo srcnode srcnoderef st_Arc st_ArcDescrRef st_BE st_Node
+siminst simplace socketid socketinst srcinfo srcnode srcnoderef start st_Arc st_ArcDescrRef st_BE st_Node
 st_NodeDescrRef st_PI st_PI0 st_PI1 st_TI st_TI0 st_TI1 staterec stlst stmt stopcritsatisfied
 stringreparcref stringrepberef stringrepmarkref stringrepnoderef stringreppiref stringreptiref
 sub_pages super_pages surrpgglobfus surrports tab1 tab2 tabel targetinfo temp terminationtime text
 thistimestr thistree times tl tlvars to tod topOGdatarec topOGdatarecfield totalarccountstr
 totalnodecountstr totaltimestr trans_list transid transinsts transitions trlist trmlno trname trstr
 tsurrpgglobfus tsurrports typeerr typestr unchngrecs use userArcFilter userNodeFilter useractionfun
-userfilterfun userpredfun userpredicate valOf varlist varlists vars wasthere withcode withtime
+userfilterfun userpredfun userpredicate valOf varlist varlists vars value wasthere withcode withtime
 """
 CONSTRUCTORS = frozenset(_CONSTRUCTORS.split())
 """As constants of enumerations, constructors of unions, index names, exceptions."""

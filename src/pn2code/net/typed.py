@@ -75,6 +75,7 @@ class TypedNet:
 
     Args:
         elaborator: knows the net's declarations, for texts beside the net (functions of monitors).
+        with_instance: ids of the places and transitions that use `inst ()`.
     """
 
     net: Net
@@ -84,3 +85,4 @@ class TypedNet:
     fusions: tuple[FusionSet, ...]
     real_time: bool
     elaborator: Elaborator | None = field(default=None, compare=False, repr=False)
+    with_instance: frozenset[str] = frozenset()

@@ -20,6 +20,7 @@ from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net.check import typed_marking
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition, Form
+from pn2code.net.instance_numbers import numbered
 from pn2code.properties.marks import Looks, Marks
 from pn2code.properties.names import Names
 
@@ -117,7 +118,12 @@ class Typist:
         with self._aside() as d:
             source = _source(text if text.strip() else "empty", "initial marking")
             found = typed_marking(self._elaborator, source, place.colset)
-            return (*_good(found, d), source.origin)
+            exp, form = _good(found, d)
+            return (
+                numbered(exp, place.instance_number, self._elaborator.another),
+                form,
+                source.origin,
+            )
 
     def _marks(self, d: Diagnostics) -> Marks:
         return Marks(self._net, self._elaborator, Names(self._net, d))

@@ -34,12 +34,27 @@ class Collector:
     Args:
         id, name, timed: as in its row of one simulation.
         statistics: by name.
+        simulations: how many gave an observation of each.
+        without_values: in how many of these it saw no value. All its statistics are 0 there, and so are the
+            observations, as in CPN Tools.
     """
 
     id: str
     name: str
     timed: bool
     statistics: Mapping[str, Average]
+    simulations: int
+    without_values: int
+
+    @property
+    def note(self) -> str:
+        """What is to be known of the averages; "": nothing."""
+        if not self.without_values:
+            return ""
+        return (
+            f"In {self.without_values} of {self.simulations} simulations it saw no value: each of its statistics "
+            "counts as 0 there, as in CPN Tools."
+        )
 
 
 @frozen
@@ -88,6 +103,7 @@ class Replications:
                     "id": c.id,
                     "name": c.name,
                     "timed": c.timed,
+                    "without_values": c.without_values,
                     "statistics": {name: x.row() for name, x in c.statistics.items()},
                 }
                 for c in self.collectors
@@ -100,7 +116,12 @@ def _collector(rows: Sequence[Mapping[str, Any]]) -> Collector:
     names = [n for n in STATISTICS if not (first["timed"] and n == "sum")]
     own = {n: [row["avg" if n == "avrg" else n] for row in rows] for n in names}
     return Collector(
-        first["id"], first["name"], first["timed"], {n: Average.of(x) for n, x in own.items()}
+        first["id"],
+        first["name"],
+        first["timed"],
+        {n: Average.of(x) for n, x in own.items()},
+        len(rows),
+        own["count"].count(0),
     )
 
 
@@ -143,6 +164,7 @@ def text(file: str, found: Replications, *, timed: bool) -> str:
     for c in found.collectors:
         lines += ["", c.name + (" (timed)" if c.timed else "")]
         lines += _table([list(_HEADER), *([n, *numbers(x)] for n, x in c.statistics.items())])
+        lines += [f"  {c.note}"] if c.note else []
     if not found.whole:
         lines += ["", "no simulation came to its end, so nothing is known of the data collectors"]
     elif not found.collectors:

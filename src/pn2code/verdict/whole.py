@@ -24,7 +24,7 @@ from pn2code.verify.answers import outcome
 from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
-from pn2code.verify.answers.reasons import raised
+from pn2code.verify.answers.reasons import raises
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.controller import long_timers, short_timers
 from pn2code.verify.controller.control_types import Control
@@ -315,7 +315,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     index = error.get("transition")
     t = None if index is None else opened.flat.transitions[index]
     where = f"transition `{t.name}`" if t is not None else error["where"]
-    says, origin = f"{where} raises {raised(error['message'])}", t.origin if t is not None else None
+    says, origin = f"{where} {raises(error['message'])}", t.origin if t is not None else None
     notes: list[str | Note] = [error["where"]] if error["where"] and t is None else []
     exact = None
     if t is not None and trace is not None:

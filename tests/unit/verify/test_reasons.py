@@ -22,6 +22,10 @@ def test_there_are_no_back_ticks_within_back_ticks(message: str, said: str) -> N
         ("Div", "raises `Div`"),
         ("`hd` of an empty list", "raises `hd` of an empty list"),
         ("colour outside its colour set", "gives a value that is not in its colour set"),
+        (
+            "illegal colour (~3): it is not in the colour set `SMALL`",
+            "gives the illegal colour (~3), which is not in the colour set `SMALL`",
+        ),
     ],
 )
 def test_what_is_no_exception_is_not_said_to_be_raised(message: str, said: str) -> None:
@@ -39,6 +43,11 @@ def test_the_words_are_those_of_the_compiled_net(root: Path) -> None:
         ("Div", "", "`Div` is raised there"),
         ("Div", "`10 div k`", "`Div` is raised there by `10 div k`"),
         ("colour outside its colour set", "", "it gives a value that is not in its colour set"),
+        (
+            "illegal colour 7: it is not in the colour set `SMALL`",
+            "`f n`",
+            "`f n` gives the illegal colour 7, which is not in the colour set `SMALL`",
+        ),
         ("recursion too deep", "`f n`", "`f n` calls functions too deep within each other"),
     ],
 )

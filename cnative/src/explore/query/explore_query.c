@@ -297,7 +297,8 @@ static bool find_enabled(ex_queries_t *queries)
     return is_fine;
 }
 
-/* Of a part, a node may be dead of which it is not known whether it has arcs; one whose arcs lead out of the part is not. */
+/* Of a part, a node may be dead of which it is not known whether it has arcs; one whose arcs lead out of the part is
+ * not. */
 static bool may_be_dead(const ex_queries_t *queries, ex_item_t *item)
 {
     item->may = with_more(queries, item->set, queries->run->graph->open);

@@ -91,6 +91,10 @@ class Var:
     inst: tuple[Type, ...] = ()
 
 
+INSTANCE_NUMBER = "Page.inst"
+"""The built-in that `inst` is in inscriptions, until the net is flattened: see `pn2code.net.instance_numbers`."""
+
+
 @frozen
 class Builtin:
     """A function or value of the built-in environment by its full resolved name.

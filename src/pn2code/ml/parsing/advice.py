@@ -129,8 +129,8 @@ def unsupported(name: str) -> str:
     """For a function of CPN Tools that pn2code does not have."""
     if name == "inst":
         return (
-            "it is the number of the page instance: keep it as a token of a place that each instance has from the "
-            "page above, as in `place Self : INT` with `1`1` for the first one"
+            "it is the number of the page instance, which arcs, guards, delays, code segments and initial markings "
+            "know: give it to a function as an argument, as in `f (inst (), n)`"
         )
     if name.endswith(".model_time"):
         return "it is the clock of the engine itself, a reference: write `time ()` for what `!` of it is"

@@ -96,6 +96,7 @@ class Context:
         int_bits: width of `int`.
         unread_files: files of declarations that are not there or could not be read.
         announced: gives all names that the net declares anywhere.
+        mentions_instances: whether an inscription uses `inst`.
         warned: element, part and function of each warning about a function that cannot run here.
     """
 
@@ -119,6 +120,7 @@ class Context:
     int_bits: int = 31
     unread_files: list[str] = field(default_factory=list)
     announced: Callable[[], frozenset[str]] = frozenset
+    mentions_instances: bool = False
     warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG

@@ -125,13 +125,18 @@ class UnsupportedEntry:
 
 
 @frozen
+class InstanceEntry:
+    """`inst`, in an inscription of a page."""
+
+
+@frozen
 class HiddenEntry:
     """A variable of the net whose name has become that of a constructor: it cannot be used."""
 
 
 Entry = (
     Binding | BuiltinEntry | OverloadedEntry | ConEntry | EmptyEntry | UnitEntry | ColsetEntry | BrokenEntry
-    | UnsupportedEntry | HiddenEntry | SealedEntry
+    | UnsupportedEntry | InstanceEntry | HiddenEntry | SealedEntry
 )  # fmt: skip
 
 

@@ -29,7 +29,14 @@ from pn2code.ml.parsing.parser import (
 from pn2code.ml.parsing.pasted import is_whole_delay
 from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.context import Context, Draft
-from pn2code.ml.typing.environment import Binding, BrokenEntry, BuiltinEntry, Scope
+from pn2code.ml.typing.environment import (
+    Binding,
+    BrokenEntry,
+    BuiltinEntry,
+    InstanceEntry,
+    Scope,
+    UnsupportedEntry,
+)
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import (
     I_BOOL,
@@ -79,9 +86,12 @@ class Inscriptions:
         self._computed = computed
 
     @contextmanager
-    def _scope(self, scope: Scope) -> Iterator[None]:
-        """One inscription: what is declared in it is local."""
+    def _scope(self, scope: Scope, *, on_page: bool = False) -> Iterator[None]:
+        """One inscription: what is declared in it is local. One that stands on a page knows the number of its
+        instance, `inst ()`, unless the net has something else of that name."""
         self._ctx.scope = Scope(scope)
+        if on_page and isinstance(scope.value("inst"), UnsupportedEntry):
+            self._ctx.scope.values["inst"] = InstanceEntry()
         self._ctx.tainted = False
         self._ctx.unifier.level = 1
         self._ctx.tyvars.append({})
@@ -119,7 +129,7 @@ class Inscriptions:
             scope.values[name] = Binding(
                 name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
             )
-        with self._scope(scope), self._one_mistake():
+        with self._scope(scope, on_page=bool(text.origin.part)), self._one_mistake():
             before = self._ctx.errors
             found = self._first(exp, types)
             if isinstance(found, tuple):
@@ -141,7 +151,7 @@ class Inscriptions:
         self, name: s.Exp, written: s.Pat, t: Type
     ) -> tuple[core.Exp, core.Pat, core.Exp] | None:
         """`x as pattern` on an input arc: the token, the pattern for it, and whether the token matches."""
-        with self._scope(self._variables), self._one_mistake():
+        with self._scope(self._variables, on_page=True), self._one_mistake():
             before = self._ctx.errors
             wanted = from_type(t, [])
             draft = self._expressions.check(name, wanted, "inscription")
@@ -292,7 +302,7 @@ class Inscriptions:
         if len(resolved) == 1 and isinstance(resolved[0], s.ListExp):
             resolved = list(resolved[0].items)
             is_alone = False
-        with self._scope(self._variables):
+        with self._scope(self._variables, on_page=True):
             before = self._ctx.errors
             drafts = []
             for e in resolved:
@@ -393,7 +403,7 @@ class Inscriptions:
         exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
         if exp is None:
             return None
-        with self._scope(self._variables), self._one_mistake():
+        with self._scope(self._variables, on_page=True), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.check(exp, from_type(wanted, []), "delay")
             built = self._finish(before, draft.build)
@@ -482,7 +492,7 @@ class Inscriptions:
             scope.values[symbol.name] = Binding(
                 symbol.name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
             )
-        with self._scope(scope):
+        with self._scope(scope, on_page=True):
             wanted = from_type(tuple_of(*(x.type for x in outputs)), []) if outputs else I_UNIT
             action = self._expressions.check(exp, wanted, "action")
             return self._finish(before, lambda: TypedCode(inputs, outputs, action.build()))

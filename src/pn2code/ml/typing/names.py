@@ -5,7 +5,7 @@ from __future__ import annotations
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import UNIT, Type
+from pn2code.ml.core.types import INT, UNIT, TFun, Type
 from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS, word_type
 from pn2code.ml.library.builtins import BUILTINS, OVERLOADED
 from pn2code.ml.library.datatypes import NIL
@@ -22,6 +22,7 @@ from pn2code.ml.typing.environment import (
     EmptyEntry,
     Entry,
     HiddenEntry,
+    InstanceEntry,
     OverloadedEntry,
     SealedEntry,
     UnitEntry,
@@ -148,6 +149,13 @@ class Names:
                     span,
                 )
                 return BROKEN
+            case InstanceEntry():
+                self._ctx.mentions_instances = True
+                number = TFun(UNIT, INT)
+                return Draft(
+                    from_type(number, []),
+                    lambda: core.Builtin(core.INSTANCE_NUMBER, number, span),
+                )
             case UnsupportedEntry():
                 self._ctx.error(
                     codes.UNSUPPORTED_BUILTIN,

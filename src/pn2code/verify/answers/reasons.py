@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 _CLAUSES = {
     "states": "the limit of states was reached",
     "seconds": "the limit of time was reached",
@@ -54,14 +56,24 @@ _NO_EXCEPTIONS = {
 }
 """What the compiled net says, in words of its own (`pn_error_name`), where no exception of CPN ML is raised."""
 
+_ILLEGAL = re.compile(r"illegal colour (.*): it is not in (the colour set `[^`]*`)", re.DOTALL)
+"""The same about a value: `pn_raise_colour`, in the words of the token game."""
+
+
+def _no_exception(message: str) -> str:
+    illegal = _ILLEGAL.fullmatch(message)
+    if illegal:
+        return f"gives the illegal colour {illegal[1]}, which is not in {illegal[2]}"
+    return _NO_EXCEPTIONS.get(message, "")
+
 
 def raises(message: str) -> str:
-    """What is wrong, behind what does it: `raises `Div``, `gives a value that is not in its colour set`."""
-    return _NO_EXCEPTIONS.get(message) or f"raises {raised(message)}"
+    """What is wrong, behind what does it: `raises `Div``, `puts more tokens into a place than there is room for`."""
+    return _no_exception(message) or f"raises {raised(message)}"
 
 
 def raised_there(message: str, by: str) -> str:
     """The same as a clause about a place that has been named, and the expression that does it, if that is known."""
-    if message in _NO_EXCEPTIONS:
-        return f"{by or 'it'} {_NO_EXCEPTIONS[message]}"
+    if wrong := _no_exception(message):
+        return f"{by or 'it'} {wrong}"
     return f"{raised(message)} is raised there" + (f" by {by}" if by else "")

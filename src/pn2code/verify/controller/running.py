@@ -625,15 +625,28 @@ class _Composer:
 
 
 def staged(partition: Partition) -> Iterator[Channel]:
-    """Channels of robots whose messages come out in an order that somebody could notice, in that order."""
+    """Channels of robots whose messages come out in an order that somebody could notice, in that order.
+
+    What is written after a message that comes out later than it is put has to come out later still, wherever the two
+    are put together.
+    """
     channels = {c.place: c for c in partition.channels}
+    order = [c.place for c in partition.channels]
     found: set[int] = set()
+    together: list[list[int]] = []
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
         put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
         if owner == SUPERVISOR or len(put) < 2:
             continue
+        together.append(sorted(put, key=order.index))
         if len({channels[place].reader for place in put}) > 1 or _acts_early(partition, put):
             found |= put
+    size = -1
+    while size < len(found):
+        size = len(found)
+        for row in together:
+            after = next((i for i, place in enumerate(row) if place in found), len(row))
+            found.update(row[after:])
     return (c for c in partition.channels if c.place in found)
 
 

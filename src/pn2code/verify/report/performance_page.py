@@ -47,6 +47,7 @@ def of_several(net: FlatNet, found: Replications) -> str:
             "title": c.name + (" (timed)" if c.timed else ""),
             "head": head,
             "rows": [[n, *numbers(x)] for n, x in c.statistics.items()],
+            "note": c.note,
         }
         for c in found.collectors
     ]
@@ -54,6 +55,7 @@ def of_several(net: FlatNet, found: Replications) -> str:
         "title": "Simulations",
         "head": ["", "Seed", "Steps", *(["Model time"] if net.timed else []), "Ended by"],
         "rows": [simulation(i, o, timed=net.timed) for i, o in enumerate(found.outcomes, 1)],
+        "note": "",
     }
     return _page(
         net,
@@ -86,4 +88,5 @@ def _collected(
         "title": title,
         "head": ["", *(_TITLES[c] for c in columns)],
         "rows": [[row["name"], *(number(row[c]) for c in columns)] for row in rows],
+        "note": "",
     }

@@ -246,7 +246,7 @@ void pn_multiset_check(pn_ctx_t *cx, const pn_multiset_t *multiset, void *value)
     const char *origin = cx->origin;
     cx->origin = multiset->origin;
     if (!pn_is_legal(cx, multiset->type, value)) {
-        pn_raise(cx, PN_ERR_COLOUR, NULL);
+        pn_raise_colour(cx, multiset->type, value);
     }
     pn_narrow(cx, multiset->type, value);
     cx->origin = origin;
@@ -488,7 +488,7 @@ bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking,
     if ((value != NULL) && pn_from_scalars(cx, multiset->type, value, scalar_value, scalars)) {
         pn_narrow(cx, multiset->type, value);
         if (!pn_is_legal(cx, multiset->type, value)) {
-            pn_raise(cx, PN_ERR_COLOUR, NULL);
+            pn_raise_colour(cx, multiset->type, value);
         }
     }
     const bool is_put = pn_ok(cx) && (value != NULL) && pn_multiset_add(cx, multiset, marking, value, 1U, cx->now);

@@ -47,6 +47,9 @@ bool sup_stop_error(sup_t *sup, const char *doing)
         return sup_stop(sup, code, "%s: %s (the head of net.c says for how many tokens it has room), while %s", where,
                         error_words(cx->error), doing);
     }
+    if (cx->error_name == cx->said) { /* a sentence of its own, with the value */
+        return sup_stop(sup, code, "%s: %s, while %s", where, cx->error_name, doing);
+    }
     return sup_stop(sup, code, "%s: %s (`%s`), while %s", where, error_words(cx->error), cx->error_name, doing);
 }
 

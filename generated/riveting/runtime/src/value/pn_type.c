@@ -461,6 +461,41 @@ bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value)
     return (type->kind != PN_KIND_RECORD) || (type->member == NULL) || type->member(cx, value);
 }
 
+/* Appends at most so many bytes of a text on one line; three dots stand for the rest. */
+static void say_shortly(pn_text_t *out, const char *bytes, size_t length, size_t most)
+{
+    static const char dots[] = "...";
+    size_t said = length;
+    if (length > most) {
+        said = most - (sizeof dots - 1U);
+        while ((said > 0U) && ((((unsigned char)bytes[said]) & 0xC0U) == 0x80U)) {
+            said--; /* a character of UTF-8 is not cut in two */
+        }
+    }
+    for (size_t i = 0U; i < said; i++) {
+        pn_text_char(out, (((unsigned char)bytes[i]) < 0x20U) ? '?' : bytes[i]);
+    }
+    pn_text_str(out, (length > most) ? dots : "");
+}
+
+void pn_raise_colour(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    if (pn_ok(cx)) {
+        char buffer[PN_SAID_SIZE];
+        pn_text_t colour;
+        pn_text_t said;
+        pn_text_init(&colour, buffer, sizeof buffer);
+        pn_mkstr(type, value, &colour);
+        pn_text_init(&said, cx->said, sizeof cx->said);
+        pn_text_str(&said, "illegal colour ");
+        say_shortly(&said, colour.buffer, colour.length, PN_SAID_SIZE / 2U);
+        pn_text_str(&said, ": it is not in the colour set `");
+        say_shortly(&said, type->name, strlen(type->name), PN_SAID_SIZE / 4U);
+        pn_text_str(&said, "`");
+        pn_raise(cx, PN_ERR_COLOUR, cx->said);
+    }
+}
+
 #ifndef PN_FLAT_TYPES
 
 static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
