@@ -77,6 +77,7 @@ class Silence:
             messages, the places that are marked if it is there.
         answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
         unanswered: where its script ends without an answer, see `unanswered`; "": it always answers.
+        awaited: for which messages of others than the supervisor it waits, in words: "`away` of robot `maker`".
     """
 
     who: str
@@ -84,6 +85,7 @@ class Silence:
     states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
     answers: tuple[tuple[int, int], ...]
     unanswered: str = ""
+    awaited: tuple[str, ...] = ()
 
 
 @frozen
@@ -443,7 +445,15 @@ class _Composer:
             if states:
                 answers = tuple((place, self.seen[place]) for place in mine)
                 who = self.partition.owners[owner].phrase
-                yield Silence(who, owes, tuple(states), answers, unanswered(program))
+                awaited = tuple(self._of_others(owner))
+                yield Silence(who, owes, tuple(states), answers, unanswered(program), awaited)
+
+    def _of_others(self, reader: int) -> Iterator[str]:
+        """The messages that a program gets from others than the supervisor, in words."""
+        for c in self.partition.channels:
+            if c.reader == reader and c.writer != SUPERVISOR:
+                who = self.partition.owners[c.writer].phrase
+                yield f"`{self.partition.net.places[c.place].short}` of {who}"
 
     def _shown(self, place: int) -> tuple[int, ...]:
         return (self.out[place],) if place in self.out else ()
