@@ -54,7 +54,7 @@ def test_a_tool_frame_goes_from_the_cell_to_the_script_and_the_run(tmp_path: Pat
     )
     none = Diagnostics()
     assert generate(welding_cell(tmp_path / "none", toml=toml), none, checked=False) is None
-    assert any("no robot has a tool frame `torch`" in e.message for e in none.errors)
+    assert any("no robot has a tool frame or tool `torch`" in e.message for e in none.errors)
     toml += "[robots.right.tcps.torch]\nz = 0.1\npitch = 10.0\n"
     cell = welding_cell(tmp_path / "cell", toml=toml)
     d = Diagnostics()

@@ -1085,7 +1085,7 @@ trans T guard [(c, s) = tw, s = 1]
   out A : tw
 """,
         0,
-        ['c=red,n=1,s=1,tw=(red,1)', 'c=green,n=1,s=1,tw=(green,1)', 'c=blue,n=1,s=1,tw=(blue,1)'],
+        'binding-circle',
     ),
     (
         "priority of operators",
