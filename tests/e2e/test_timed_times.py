@@ -89,6 +89,13 @@ def test_a_robot_begins_nothing_after_the_supervisors_end(
     assert (cycle.row()["least_s"], cycle.row()["most_s"]) == (least, most)
 
 
+def test_what_cannot_be_done_stops_a_run_whatever_others_still_do(tmp_path: Path) -> None:
+    """A supervisor that looks each second goes on for ever beside an arm that stands still in the model."""
+    cycle = times.cycle_of(early_cell.write(tmp_path / "cell", 0, *early_cell.unreached()))
+    assert cycle is not None and not cycle.why
+    assert any("a run may stop" in x for x in cycle.others)
+
+
 def test_within_seconds_counts_timers_and_waits(tmp_path: Path) -> None:
     cell = timer_cell.write(tmp_path / "cell")
     asked = [x for n in ("6", "5") for x in ("--property", ANSWERED.format(n))]

@@ -78,10 +78,40 @@ base = { x = 0.0, y = 0.0, z = 0.0, yaw = 0.0 }
 """
 
 
-def write(folder: Path, waits: int = 0) -> Path:
+POLLING = """    trans Poll
+      in Asked : ()
+      out Asked : ()@+1
+"""
+UNREACHED = "far {x = 9000.0, y = 0.0, z = 0.0, rx = 0.0, ry = 0.0, rz = 0.0}"
+
+
+def unreached() -> tuple[str, str]:
+    """Another one, as net and cell.toml: the robot is told what it cannot do, while its supervisor looks each second.
+
+    It answers afterwards.
+    """
+    net = NET.replace(
+        "  fun far () = ();\n",
+        "  colset POSE = record x:REAL * y:REAL * z:REAL * rx:REAL * ry:REAL * rz:REAL;\n"
+        "  fun far (p : POSE) = ();\n",
+    ).replace("action far ()", f"action {UNREACHED}")
+    net = net.replace("      out Told : ()\n      out d : ()\n", "      out Told : ()\n")
+    net = net.replace("      out Waiting : ()\n", "      out Waiting : ()\n      out d : ()\n")
+    net = net.replace("    place Busy\n", "    place Busy\n    place Asked : T\n")
+    net = net.replace("      out Busy : ()\n", "      out Busy : ()\n      out Asked : ()@+1\n")
+    net = net.replace("    trans Done\n", POLLING + "    trans Done\n")
+    toml = TOML.replace(
+        'far = { command = "tool", action = "far", duration_s = 7.0 }',
+        'far = { command = "move_joint" }',
+    )
+    return net, toml
+
+
+def write(folder: Path, waits: int = 0, net: str = NET, toml: str = TOML) -> Path:
     """The cell as files; the robot `waits` so many seconds after its answer."""
-    net = NET.replace("      out Told : ()\n", f"      out Told : ()@+{waits}\n") if waits else NET
+    if waits:
+        net = net.replace("      out Told : ()\n", f"      out Told : ()@+{waits}\n")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "cell.cpn").write_bytes(cpn(net))
-    (folder / "cell.toml").write_text(TOML, encoding="utf-8")
+    (folder / "cell.toml").write_text(toml, encoding="utf-8")
     return folder

@@ -202,7 +202,7 @@ class Search:
         # What can be begun may be, before the supervisor has finished; and who has a choice may choose what takes time.
         is_last = not is_over and any(target in self.graph.over for _, target in at_once)
         for owner in begins if is_last else mixed & begins.keys():
-            out += self._begun(state, stands, under_way, {owner: begins[owner]})
+            out += self._begun(node, {owner: begins[owner]})
         if not ticks and self._calm not in self.graph.marked[state]:
             ticks = [(BEGINS, state)]  # no time stamp lies ahead
         now = [u for u in under_way if u[2] == 0]
@@ -212,7 +212,7 @@ class Search:
         if out or node in self.ends:
             return out
         if begins:
-            return list(self._begun(state, stands, under_way, begins))
+            return list(self._begun(node, begins))
         going = [u for u in under_way if u[2] < FOREVER // 2]
         is_waiting = any(element >= 0 for element, _ in ticks)
         if all(u[0] == CLOCK for u in going) and not is_waiting:
@@ -288,15 +288,16 @@ class Search:
             self._told[state] = frozenset(element for element, _ in self.graph.arcs[state])
         return self._told[state]
 
-    def _begun(
-        self,
-        state: int,
-        stands: tuple[Stand, ...],
-        under_way: UnderWay,
-        begins: dict[int, list[tuple[int, Doing]]],
-    ) -> Iterator[Arc]:
-        """Everybody who can begin something does; who has a choice begins any of it."""
+    def _begun(self, node: int, begins: dict[int, list[tuple[int, Doing]]]) -> Iterator[Arc]:
+        """Everybody who can begin something does; who has a choice begins any of it.
+
+        What cannot be carried out stops a run there, whatever others could still do.
+        """
+        state, stands, under_way = self.situations[node]
         for choice in itertools.product(*begins.values()):
+            for _, doing in choice:
+                if doing.fault:
+                    self.faults.setdefault(doing.fault, node)
             new = [(o, e, doing.ns) for o, (e, doing) in zip(begins, choice, strict=True)]
             together = tuple(sorted((*under_way, *new)))
             yield (self._number((state, stands, together)), 0, BEGINS)
