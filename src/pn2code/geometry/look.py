@@ -25,7 +25,7 @@ from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
 from pn2code.geometry.where import stands_at
-from pn2code.geometry.words import numbers, reason, words
+from pn2code.geometry.words import carrying, numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.robot_cell import RobotCell
@@ -232,9 +232,7 @@ class Look:
         t, _ = _who(found, met.elements[0])
         begins = stands_at(self.cell.robot(leg.robot), leg.start)
         held = [p for p in load if p.holder]
-        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
-        if on_it := sum(p.up is not None for p in held):
-            does += f" and {on_it} on it"
+        does = words(leg.command) + carrying(leg.command, held)
         if leg.fault is not None:
             return Move(
                 leg.robot,

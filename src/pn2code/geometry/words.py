@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from pn2code.geometry.graph import MOST_STATES
 from pn2code.robot.commands import (
@@ -19,7 +20,9 @@ from pn2code.robot.commands import (
     Pose,
     ToolAction,
     Wait,
+    tcp_of,
 )
+from pn2code.robot.parts import Part
 from pn2code.verify.answers.reasons import clause
 
 _OPEN = {
@@ -77,6 +80,16 @@ def words(command: Command | None) -> str:
             return f"tool {action}"
         case Wait(duration=seconds):
             return f"wait {seconds:g} s"
+
+
+def carrying(command: Command | None, held: Iterable[Part]) -> str:
+    """What an arm has: a part, what stands on that, and its tool in use, unless the command names it."""
+    held = [*held]
+    by = "" if command is None else tcp_of(command)
+    tools = "".join(f", {p.kind.name} in use" for p in held if p.is_tool and p.kind.name != by)
+    parts = "".join(f" with {p.kind.name}" for p in held if p.up is None and not p.is_tool)
+    on_it = sum(p.up is not None for p in held)
+    return f"{parts}{f' and {on_it} on it' if on_it else ''}{tools}"
 
 
 def _within(frame: str) -> str:

@@ -11,14 +11,24 @@ import numpy as np
 
 from helpers.door_cell import TOML
 from helpers.robot_cells import nowhere
+from helpers.tool_cell import placed
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.answers import Layout, Move
 from pn2code.geometry.legs import Planner, Stand
 from pn2code.geometry.report import text
 from pn2code.geometry.where import stands_at
+from pn2code.geometry.words import carrying
 from pn2code.robot.clamps import closed_on, closes, closing, nearest, on_nothing, shut
-from pn2code.robot.commands import Along, Handling, MoveExternal, MoveJoint, Pose, ToolAction
+from pn2code.robot.commands import (
+    Along,
+    Handling,
+    MoveExternal,
+    MoveHome,
+    MoveJoint,
+    Pose,
+    ToolAction,
+)
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
@@ -101,6 +111,19 @@ def test_where_a_device_stands_is_said_by_its_axes() -> None:
     )
     layout = Layout("", 1, 1, (move,), (), 0, 0, 0.0, devices=("mill",))
     assert "\n  from door 900, vice 120.5\n" in text([layout], full=False)
+
+
+def test_what_an_arm_has_is_said_with_its_move(tmp_path: Path) -> None:
+    """A tool in use is no part that it carries."""
+    tools, d = placed(tmp_path)
+    assert tools is not None, [e.message for e in d.errors]
+    kinds = tools.tools["gripper"], tools.parts["blank"]
+    held = [Part(k.name, k, np.eye(4), "arm") for k in kinds]
+    to = Pose(1.0, 0.0, 0.5, math.pi, 0.0, 0.0)
+    assert carrying(MoveHome(), held) == " with blank, gripper in use"
+    assert carrying(MoveJoint(to, tcp="gripper"), held[:1]) == ""
+    on_it = Part("blank.2", kinds[1], np.eye(4), "arm", up=np.array([0.0, 0.0, 1.0]))
+    assert carrying(MoveJoint(to, tcp="gripper"), [*held, on_it]) == " with blank and 1 on it"
 
 
 def test_it_does_not_close_on_what_is_on_the_way() -> None:
