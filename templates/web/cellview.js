@@ -2,6 +2,7 @@
 /** The cell in 3D at the moment of the cursor: arms, parts, marks, paths of the TCPs, clearances; views and the mouse. */
 
 import { upperBound } from "./course.js";
+import { axesOf } from "./deviceaxes.js";
 import { colour, el } from "./dom.js";
 import { FIELD, distance, look, ride, spin } from "./eye.js";
 import { Path, frames, valueAt } from "./kinematics.js";
@@ -10,6 +11,7 @@ import { armAt, wayAt } from "./picking.js";
 import { CellScene, place } from "./scene3d.js";
 import { conditionColour, trail } from "./trails.js";
 import { Thrift, drawsInSoftware } from "./thrift.js";
+import { stateAt, tcpOf, toolInUse } from "./tools.js";
 import { Zones } from "./zones.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
@@ -250,7 +252,7 @@ export class CellView {
   tips() {
     const arms = this.frames.filter((/** @type {any} */ _, /** @type {number} */ i) => !this.run.cell.robots[i].device);
     return arms.map((/** @type {any} */ links) => {
-      const tcp = links[this.run.cell.robots[this.frames.indexOf(links)].tcp];
+      const tcp = tcpOf(this.run.cell, this.run.cell.robots[this.frames.indexOf(links)], links, this.t);
       return new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
     });
   }
@@ -269,7 +271,7 @@ export class CellView {
       for (let n = 0; n < count; n++) {
         const s = first + n;
         const q = path.q.slice(s * path.axes, (s + 1) * path.axes);
-        const tcp = frames(robot, q)[robot.tcp];
+        const tcp = tcpOf(this.run.cell, robot, frames(robot, q), path.t[s]);
         points.set([tcp[3], tcp[7], tcp[11]], 3 * n);
         colours.set(conditionColour(condition ? valueAt(condition, path.t[s]) : NaN, condition?.limit ?? 50, i), 3 * n);
       }
@@ -343,7 +345,7 @@ export class CellView {
   moveParts(t) {
     const index = new Map(this.run.cell.robots.map((/** @type {any} */ r, /** @type {number} */ i) => [r.name, i]));
     this.run.cell.parts.forEach((/** @type {any} */ part, /** @type {number} */ i) => {
-      const state = part.states.filter((/** @type {any} */ s) => s.t <= t + 1e-9).pop();
+      const state = stateAt(part, t);
       const object = this.cell?.parts[i];
       object.visible = Boolean(state?.frame);
       if (!state?.frame) return;
@@ -377,16 +379,14 @@ export class CellView {
       const condition = curve ? valueAt(curve, t) : NaN;
       if (r.device) {
         const q = this.joints(i, t);
-        const axes = r.joints.map((/** @type {any} */ j) => {
-          const name = r.links[j.child].name;
-          return j.slides ? `${name} ${(q[j.moves] * 1000).toFixed(1)} mm` : `${name} ${((q[j.moves] * 180) / Math.PI).toFixed(1)}°`;
-        });
+        const axes = axesOf(r, q);
         return el("span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"} · ${axes.join("  ")}`);
       }
-      const tcp = this.frames[i][r.tcp];
+      const tcp = tcpOf(this.run.cell, r, this.frames[i], t);
+      const tool = r.changes ? ` · ${toolInUse(this.run.cell, r, t) || "no tool"}` : "";
       const at = [tcp[3], tcp[7], tcp[11]].map((v) => (v * 1000).toFixed(1)).join("  ");
       return el(
-        "span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"} · TCP ${at} mm`,
+        "span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"}${tool} · TCP ${at} mm`,
         Number.isFinite(condition) ? ` · conditioning ${condition.toFixed(1)}` : "",
       );
     });

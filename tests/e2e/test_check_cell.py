@@ -11,6 +11,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from helpers.small_cell import NET, TOML, write
+from helpers.tool_cell import TOML as TOOLS
+from helpers.tool_cell import tool_cell
 from pn2code.cli.main import app
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.verdict import in_space
@@ -104,6 +106,21 @@ def test_radians_at_home_are_warned_of(tmp_path: Path) -> None:
     assert [(s, c) for s, c, m in found if "further than 3.2 degrees" in m] == [
         ("warning", "robot-home")
     ], found
+
+
+def test_wrong_units_of_racks_and_speeds_are_warned_of(tmp_path: Path) -> None:
+    """Nothing else says so before a run, which only the rack would stop."""
+    speed = 'line = { command = "move_linear", frame = "world", speed = '
+    toml = changed(TOOLS, f"{speed}0.25", f"{speed}25")
+    toml = changed(toml, "x = 0.3\ny = -0.9\nz = 0.75", "x = 300\ny = -900\nz = 750")
+    found = diagnostics(tool_cell(tmp_path / "wrong", toml=toml))
+    racks = [m for s, c, m in found if (s, c) == ("warning", "robot-reach")]
+    assert len(racks) == 1 and racks[0].startswith(
+        "tool `gripper` lies at `rackLeft`, where robot `arm` can neither take nor leave it: the pose is out of reach"
+    )
+    speeds = [m for s, c, m in found if (s, c) == ("warning", "robot-speed")]
+    assert speeds and all(m.startswith("the speed of 25 m/s has no effect: within") for m in speeds)
+    assert not diagnostics(tool_cell(tmp_path / "right"))
 
 
 @pytest.mark.parametrize(

@@ -355,6 +355,26 @@ def test_formulas_about_places_of_the_supervisor_are_answered_in_states(tmp_path
     assert {row["answer"] for row in whole["properties"]} == {"yes"}
 
 
+def test_what_is_said_of_bindings_is_said_of_the_cell_that_ends_with_its_supervisor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the net of turns robots go on after the end; after its last answer a device of the cell need not."""
+    rest = "      out Resting : k\n      out say : k\n    trans Rest\n      in Resting : k\n      out Waiting : ()\n"
+    net = NET.replace("      out Waiting : ()\n      out say : k\n", rest)
+    net = net.replace(
+        "    place Done : SAID\n", "    place Done : SAID\n    place Resting : SAID\n"
+    )
+    asked = "every fires(Say, { k = 1 }) is followed by fires(Rest, { k = 1 })"
+    found = verified(tmp_path / "limits", net, "--property", asked, parts=4)
+    monkeypatch.setattr(command, "COUNTS_FROM", None)
+    monkeypatch.setattr(command, "TURNS_FROM", 20)
+    turned = verified(tmp_path / "turns", net, "--property", asked, parts=4)
+    assert found["cell"]["reduced"] is turned["cell"]["reduced"] is True
+    for row in (*found["properties"], *turned["properties"]):
+        assert row["answer"] == "no" and row["evidence"]
+        assert not any("in turns" in x for x in row["assumes"])
+
+
 OF_PATHS = (
     ("ctl AF tokens(Scrap) >= 1", "no"),  # a run to the end without any
     ("ctl AG EF tokens(Busy) = 1", "no"),  # the end

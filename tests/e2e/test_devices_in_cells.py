@@ -15,6 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.answers import STOPPED
 from pn2code.geometry.reach_look import Wanted
 from pn2code.geometry.reach_look import look as reach
+from pn2code.geometry.report import text
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.timing.doings import NS, Doings
@@ -82,6 +83,16 @@ def test_what_a_clamp_holds_is_not_pulled_out(tmp_path: Path) -> None:
     assert "`arm` pulls `blank.1` out of `mill/vice`, which holds it" in record.reason
 
 
+def test_no_free_zone_is_proposed_for_what_a_clamp_holds(tmp_path: Path) -> None:
+    """What helps is that the clamp opens before."""
+    layout = looked(door_cell(tmp_path / "cell", PULLED), tmp_path / "traces")
+    assert layout.of_pairs == "no" and not layout.proposals
+    (pair,) = (p for p in layout.pairs if p.answer == "no")
+    assert pair.is_held and any(x.startswith("stands at door ") for x in pair.doing), pair
+    said = text([layout], full=False)
+    assert "let the net command that the clamp opens" in said and "share a zone" not in said
+
+
 def test_what_a_clamp_holds_does_not_leave_the_cell(tmp_path: Path) -> None:
     toml = TOML.replace(
         'action = "mill", duration_s = 2.0',
@@ -112,7 +123,9 @@ ASIDE = TOML.replace("[places.inVice]\nx = 1.0\n", "[places.inVice]\nx = 1.0\ny 
 EMPTY = ASIDE.replace('holds = "inVice"', 'holds = "inVice"\nmay_be_empty = true')
 
 
-@pytest.mark.parametrize(("toml", "why"), [(ASIDE, "`blank.1`, is 10.0 mm away"), (EMPTY, "")])
+@pytest.mark.parametrize(
+    ("toml", "why"), [(ASIDE, "`blank.1`, in the tool of `arm`, is 10.0 mm away"), (EMPTY, "")]
+)
 def test_a_clamp_that_closes_on_nothing_stops_a_run(toml: str, why: str, tmp_path: Path) -> None:
     """In `TOML`, with which other runs finish, the arm holds the blank there."""
     d = Diagnostics()

@@ -500,6 +500,47 @@ def test_two_runs_beside_each_other(tmp_path: Path, chromium: Any) -> None:
         assert browser.errors == []
 
 
+def test_tools_in_use_and_clamps_are_told(tmp_path: Path, chromium: Any) -> None:
+    run = with_arm(described(tmp_path, steps=6), joints=lambda k: 0.0)
+    unit = run["cell"]["robots"][0]["base"]
+    in_world = {"frame": unit, "holder": ""}
+    held = {"frame": unit, "holder": "arm"}
+    coupled = [{"t": 0.0, **in_world}, {"t": 2.0, **held}, {"t": 5.0, **in_world}]
+    run["cell"] |= {
+        "kinds": {"cup": [], "part": []},
+        "tools": {"cup": [*unit[:3], 0.25, *unit[4:]]},
+        "parts": [
+            {"name": "part.1", "kind": "part", "states": [{"t": 0.0, **held}]},
+            {"name": "cup", "kind": "cup", "states": coupled},
+        ],
+    }
+    run["cell"]["robots"][0]["changes"] = True
+    jaws = [
+        {"parent": 0, "child": k, "frame": unit, "axis": [1, 0, 0], "moves": k - 1, "slides": True}
+        for k in (1, 2, 3)
+    ]
+    links = [{"name": name, "visuals": []} for name in ("stand", "door", "vice_1", "vice_2")]
+    press = {"name": "press", "device": True, "base": unit, "home": [0.9, 0.05, 0.06], "tcp": 0}
+    press |= {"links": links, "joints": jaws, "clamps": {"vice": [1, 2]}, "lower": [], "upper": []}
+    run["cell"]["robots"].append(press)
+    with opened(chromium, viewport={"width": 1400, "height": 950}) as browser:
+        browser.open(written(tmp_path, run))
+        said = browser.page.locator("#cell .status .arm")
+        for t, tool, reach in ((1.0, "no tool", 1000), (3.0, "cup", 1250), (5.5, "no tool", 1000)):
+            browser.ask("t => replay.seek(t)", t)
+            words = " ".join(said.nth(0).inner_text().split())
+            assert words == f"arm rests · {tool} · TCP {reach:.1f} 0.0 0.0 mm"
+        assert said.nth(1).inner_text().split("·")[1].split() == [
+            "door",
+            "900.0",
+            "mm",
+            "vice",
+            "110.0",
+            "mm",
+        ]
+        assert browser.errors == []
+
+
 def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: Any) -> None:
     run = described(tmp_path, steps=12)
     other = with_arm(

@@ -11,7 +11,7 @@ from tools.adversary import times, waits, wander
 from tools.adversary.wander import Pace
 from typer.testing import CliRunner
 
-from helpers import timer_cell
+from helpers import early_cell, timer_cell
 from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
@@ -64,6 +64,36 @@ def test_runs_of_random_timers_keep_the_bounds(seed: int, tmp_path: Path) -> Non
     assert all(run.end == "finished" for _, run in made)
     assert not list(times.contradictions(cycle, iter(made)))
     assert not list(waits.contradictions(measured[0], random, made))
+
+
+def test_a_script_waits_for_its_control_token_alone(tmp_path: Path) -> None:
+    """What it notes with a later time stamp, where nobody reads, keeps it from nothing."""
+    net = timer_cell.NET.replace(
+        "      out Thinking : ()@+c\n", "      out Thinking : ()@+c\n      out Log : ()@+8\n"
+    ).replace("    place Thinking : T\n", "    place Thinking : T\n    place Log : T\n")
+    cycle = times.cycle_of(timer_cell.write(tmp_path / "cell", net=net))
+    assert cycle is not None and not cycle.why
+    assert (cycle.row()["least_s"], cycle.row()["most_s"]) == (5.999, 14.001)
+
+
+@pytest.mark.parametrize(("waits", "least", "most"), [(0, 0.0, 2.001), (4, 3.999, 4.001)])
+def test_a_robot_begins_nothing_after_the_supervisors_end(
+    waits: int, least: float, most: float, tmp_path: Path
+) -> None:
+    """Its first command is done to its end, if it was begun; neither the second nor the next transition follows.
+
+    Runs take 2 s and 4 s.
+    """
+    cycle = times.cycle_of(early_cell.write(tmp_path / "cell", waits))
+    assert cycle is not None and not cycle.why and not cycle.others
+    assert (cycle.row()["least_s"], cycle.row()["most_s"]) == (least, most)
+
+
+def test_what_cannot_be_done_stops_a_run_whatever_others_still_do(tmp_path: Path) -> None:
+    """A supervisor that looks each second goes on for ever beside an arm that stands still in the model."""
+    cycle = times.cycle_of(early_cell.write(tmp_path / "cell", 0, *early_cell.unreached()))
+    assert cycle is not None and not cycle.why
+    assert any("a run may stop" in x for x in cycle.others)
 
 
 def test_within_seconds_counts_timers_and_waits(tmp_path: Path) -> None:

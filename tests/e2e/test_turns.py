@@ -84,6 +84,9 @@ def test_conditions_on_states_are_asked_in_turns(
     assert [row["answer"] for row in whole["properties"]] == [answer for _, answer in PROPERTIES]
     assert [row["answer"] for row in found["properties"]] == [answer for _, answer in PROPERTIES]
     assert found["cell"]["reduced"] is True
+    # The last property is asked in two ways: the checks have their own answers nevertheless.
+    told, all_told = ([(c["check"], c["answer"]) for c in x["controller"]] for x in (found, whole))
+    assert told == all_told
     for row in found["properties"]:
         if row["answer"] == "no":
             assert row["evidence"]["confirmed"] and row["rests_on"] in ("part", "run")

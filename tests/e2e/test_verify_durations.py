@@ -172,15 +172,16 @@ PRESSED = "every fires(Sup'Start) is followed by fires(Press'Press) within 9 sec
 
 
 @pytest.mark.parametrize(
-    ("drills", "has_arm", "answer"),
+    ("drills", "has_arm", "presses", "answer"),
     [
-        (False, True, "inconclusive"),  # the supervisor may finish before the press begins
-        (True, True, "yes"),  # it finishes after 2 s, and an arm that is at work goes on
-        (True, False, "no"),  # for a device nobody waits
+        (False, True, 1, "inconclusive"),  # the supervisor may finish before the press begins
+        (True, True, 1, "yes"),  # it finishes after 2 s, and an arm that is at work goes on
+        (True, True, 2, "no"),  # but with this command only, and not with the next one
+        (True, False, 1, "no"),  # for a device nobody waits
     ],
 )
 def test_the_end_of_the_cell_may_come_first(
-    tmp_path: Path, drills: bool, has_arm: bool, answer: str
+    tmp_path: Path, drills: bool, has_arm: bool, presses: int, answer: str
 ) -> None:
     """The press answers before it presses: it may hear that the supervisor has finished, and then it does not."""
     answered = NET.replace(
@@ -194,6 +195,8 @@ def test_the_end_of_the_cell_may_come_first(
     (tmp_path / "cell.toml").write_text(toml, encoding="utf-8")
     net = answered.replace("AGAIN", "n + 1")
     net = net if drills else net.replace("code action drill ()", "")
+    if presses > 1:
+        net = net.replace("code action press ()", "code action (press (); press ())")
     (tmp_path / "cell.cpn").write_bytes(cpn(net))
     timed, finished = verified(tmp_path, PRESSED, END.format(9))["properties"]
     assert timed["answer"] == answer

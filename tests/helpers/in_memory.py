@@ -57,7 +57,8 @@ def room(shared: Path = SHARED_MEMORY, needed: int = ROOM, memory: int = MEMORY)
         if shutil.disk_usage(shared).free < needed or available() < memory:
             return None
         made = shared / f"{PREFIX}{os.getpid()}"
-        made.mkdir(mode=0o700)
+        made.mkdir()
+        made.chmod(0o711)  # programs that tests run as another user lie within
     except OSError:
         return None
     if not can_run(made):

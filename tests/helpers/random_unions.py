@@ -342,7 +342,12 @@ class _Symmetric(_Small):
         self.lines.append(f"{indent}trans {name}")
         if self.chance(0.25):
             kind = r.choice(self.kinds)
-            self.lines.append(
-                f"{indent}  guard [v{kind.name} {r.choice(('=', '<>'))} w{kind.name}]"
-            )
+            v, w = f"v{kind.name}", f"w{kind.name}"
+            guard = f"{v} {r.choice(('=', '<>'))} {w}"
+            taken_there = {arc.partition(" : ")[2] for arc in arcs if arc.startswith("in ")}
+            if (
+                "=" in guard and not {v, w} & taken_there
+            ):  # an equation binds only from what is bound
+                guard = f"not ({v} <> {w})"
+            self.lines.append(f"{indent}  guard [{guard}]")
         self.lines += [f"{indent}  {arc}" for arc in arcs]

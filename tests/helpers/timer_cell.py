@@ -173,10 +173,14 @@ def drawn(random: Random) -> dict[str, float]:
 
 
 def write(
-    folder: Path, numbers: Mapping[str, float] = USUAL, said: str = "0", more: str = ""
+    folder: Path,
+    numbers: Mapping[str, float] = USUAL,
+    said: str = "0",
+    more: str = "",
+    net: str = NET,
 ) -> Path:
-    """The cell as files; `more` is added to cell.toml."""
-    net, toml = NET, TOML
+    """The cell as files; `more` is added to cell.toml, and `net` is another one."""
+    toml = TOML
     for name, value in numbers.items():
         net, toml = net.replace(name, str(value)), toml.replace(name, str(value))
     folder.mkdir(parents=True, exist_ok=True)

@@ -28,6 +28,7 @@ from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
 from tools.reduction_cells.peers import peers
 from tools.reduction_cells.shops import shop
 from tools.reduction_cells.stations import stations
+from tools.reduction_cells.talks import talks
 
 from helpers.netbuilder import cpn
 from helpers.random_cells import random_cell
@@ -57,6 +58,7 @@ MADE: Mapping[str, Callable[[Random], tuple[str, str]]] = {
     "shops": shop,
     "peers": peers,
     "stations": stations,
+    "talks": talks,
 }
 
 

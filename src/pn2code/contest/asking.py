@@ -11,6 +11,7 @@ and if it cannot be unfolded in its share of the time, for the rest of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from math import prod
 from pathlib import Path
 
@@ -111,6 +112,8 @@ class Asking:
                 tables = unfolded(net)
         except (TimeIsOverError, TooLargeError) as error:
             self.say(f"not unfolded: {str(error) or 'it takes too long'}")
+            # In the game from before a step may still be searched for.
+            game = None if without is None else self._game(net)
             if game is not None and without is not None:
                 yield from self._answers(without, self.deadline, game)
             yield from self._rest()
@@ -120,13 +123,16 @@ class Asking:
         else:
             yield from self.of_tables(tables)
 
+    def _game(self, net: FlatNet) -> Game | None:
+        with suppress(TimeIsOverError), self.deadline.enforced():
+            return Game(net)
+        return None
+
     def _without_colours(self, net: FlatNet) -> tuple[Game | None, Tables | None]:
-        try:
-            with self.deadline.enforced():
-                game = Game(net)
-                return game, uncoloured(net, game)
-        except TimeIsOverError:
-            return None, None
+        with suppress(TimeIsOverError), self.deadline.enforced():
+            game = Game(net)
+            return game, uncoloured(net, game)
+        return None, None
 
     def _answers(self, tables: Tables, deadline: Deadline, game: Game | None) -> Iterator[str]:
         questions: list[Asked] = []

@@ -11,7 +11,6 @@ these: F q is true U q, and G p the opposite of F not p.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import field
 
 from pn2code.base.frozen import frozen, record
 from pn2code.contest.formulas import Formula, Op
@@ -59,33 +58,31 @@ class Followed:
         path: the formula; not with next.
         before: whether p holds in a marking.
         reach: whether q does.
+        awaited: the run, and the number of the marking in it, with which it goes on; None: none does.
     """
 
     path: Path
     before: Callable[..., bool]
     reach: Callable[..., bool]
-    run: int = field(default=-1)
-    is_decided: bool = False
+    awaited: tuple[int, int] | None = None
 
     def on(self, run: int, at: int, sight: object, *, is_last: bool) -> bool | None:
         """The value of the formula, if the run decides it here.
 
         Args:
             run: its number.
-            at: the number of the marking in it, from 0 on: a formula that comes later waits for another run.
+            at: the number of the marking in it, from 0 on; who has not seen all before waits for another run.
             sight: the marking.
             is_last: whether it is dead.
         """
-        if at == 0:
-            self.run, self.is_decided = run, False
-        if self.run != run or self.is_decided:
+        if at and self.awaited != (run, at):
             return None
+        self.awaited = None
         if self.reach(sight):
-            self.is_decided = True
             return not self.path.is_opposite if self.path.quantifier == "E" else None
         if not self.before(sight) or is_last:
-            self.is_decided = True
             return self.path.is_opposite if self.path.quantifier == "A" else None
+        self.awaited = run, at + 1
         return None
 
 

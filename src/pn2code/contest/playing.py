@@ -14,6 +14,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from itertools import islice
 
 from pn2code.base.frozen import frozen
@@ -36,6 +37,7 @@ _MOST_FIRST = 1000
 """Markings after the initial one that are looked at."""
 _CHOICES = 4
 """Bindings of a transition of which one is drawn."""
+_RAISED = (GameError, MlException, MlLimit)
 
 
 @frozen
@@ -74,7 +76,7 @@ class Play(threading.Thread):
     """The runs, until the time is over.
 
     Args:
-        game: of the net.
+        game: of the net; nobody else uses it, and the thread may do so for some time after its end.
         open_: what is still asked.
         said: where the answers go.
         ends: when to stop, on the monotonic clock.
@@ -99,6 +101,7 @@ class Play(threading.Thread):
         self.most: dict[int, int] = {}
         self.runs = 0
         self.first: list[Sight] = []
+        self.has_looked_first = False
         self.is_first_whole = False
         self.seen_first: set[int] = set()
 
@@ -140,7 +143,7 @@ class Play(threading.Thread):
                 )
                 element = BindingElement.make(t, self.draw.choice(list(some)))
                 marking, _ = self.game.occur(marking, element)
-            except (GameError, MlException, MlLimit):  # what raises an exception leads nowhere
+            except _RAISED:  # what raises an exception leads nowhere
                 return
 
     @staticmethod
@@ -168,27 +171,29 @@ class Play(threading.Thread):
         if at or sought.number in self.seen_first:
             return None
         self.seen_first.add(sought.number)
-        if not self.first:
+        if not self.has_looked_first:
+            self.has_looked_first = True
             self._look_first()
         # What follows a dead marking: nothing in branching time, in linear time itself.
         first = [sight] if sought.is_linear and not sight.enabled else self.first
         return next_value(f.path, f.reach, first, is_all=self.is_first_whole)
 
     def _look_first(self) -> None:
-        """The markings after the initial one, if they are not too many."""
+        """The markings after the initial one, if they are not too many; all of them, if nothing raises an exception."""
         marking = self.game.own_initial_marking
-        enabled = self.game.enabled_transitions(marking)
-        self.is_first_whole = True
-        for t in enabled:
-            for binding in self.game.enabling.enabled(t, marking):
-                if len(self.first) == _MOST_FIRST or not self._goes_on():
-                    self.is_first_whole = False
-                    return
-                try:
-                    after, _ = self.game.occur(marking, BindingElement.make(t, binding))
-                except (GameError, MlException, MlLimit):
-                    continue
-                self.first.append(self._sight(after, self.game.enabled_transitions(after)))
+        is_whole = True
+        with suppress(*_RAISED):
+            for t in self.game.enabled_transitions(marking):
+                for binding in self.game.enabling.enabled(t, marking):
+                    if len(self.first) == _MOST_FIRST or not self._goes_on():
+                        return
+                    try:
+                        after, _ = self.game.occur(marking, BindingElement.make(t, binding))
+                    except _RAISED:
+                        is_whole = False
+                        continue
+                    self.first.append(self._sight(after, self.game.enabled_transitions(after)))
+            self.is_first_whole = is_whole
 
 
 def follow(tables: Tables, f: Formula) -> Followed | None:

@@ -35,7 +35,7 @@ class Move:
 
     Args:
         robot, transition: who does it, and the (first) transition that commands it.
-        command: in words; begins: the TCP pose where it begins, in words.
+        command: in words; begins: the TCP pose where it begins, in words; of a device its axes.
         kind: "ptp", "lin", or what an arm does that stands.
         answer: whether it can be done; problem: why not, or why it is not known.
         limit: deg, the least distance from a limit of an axis; axis: which one (from 1).
@@ -92,6 +92,7 @@ class Pair:
         where: what meets what, and where; distance: m, negative: an overlap; least: nowhere is it less (None: unknown).
         joints: where the arms are then, by robot, rad.
         run: in which they are under way.
+        is_held: whether one of them is a clamp that holds what the other one takes along: no free zone would help.
     """
 
     robots: tuple[str, str]
@@ -105,6 +106,7 @@ class Pair:
     run: Run | None = None
     picture: str = ""
     least: float | None = None
+    is_held: bool = False
 
     def row(self) -> dict[str, Any]:
         """For programs."""

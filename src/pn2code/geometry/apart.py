@@ -32,7 +32,7 @@ class Apart:
         least: m, that is certain: where they touch, nothing overlaps by more than -least (-inf: nothing is certain).
         nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
         where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
-        why: of "open".
+        why: of "open"; of a touch that a clamp holds what the other thing takes along.
         is_whole: whether the deepest overlap was searched for; False: this one was met first.
     """
 
@@ -56,7 +56,11 @@ class Standing:
         link = Link.of(part.name, 0, part.frame, *box)
         self.names = {part.name: 0}
         self.radii = np.array([link.radius])
-        self._knots = Knots(np.zeros((1, 6)), link.ends[None, None], np.zeros((1, 1)))
+        never = np.zeros(1, bool)
+        self._knots = Knots(np.zeros((1, 6)), link.ends[None, None], np.zeros((1, 1)), never)
+
+    def begin(self) -> None:
+        """A question begins."""
 
     def knots(self, a: Array, b: Array) -> Knots:
         """Always the same."""

@@ -136,6 +136,8 @@ class Comparison:
             off = (knots.spread + track.radii)[..., None, None]
             low = (knots.ends - off).min(axis=(0, 1, 2))
             high = (knots.ends + off).max(axis=(0, 1, 2))
+            if knots.lost.any():
+                low, high = np.full((2, 3), np.inf) * [[-1.0], [1.0]]
             self._extents[key] = (low, high)
         return self._extents[key]
 

@@ -35,6 +35,7 @@ from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
 from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
+from pn2code.verify.controller.stops import machine
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.nondeterminism import undetermined
@@ -107,6 +108,7 @@ class CellGraph:
             self._game, partition.config.primitives if partition.config else {}
         )
         self._commands: dict[int, tuple[Command, ...]] = {}
+        self._control: dict[int, frozenset[int]] = {}
         effects = effects_of(partition.net.program)
         self.outside: dict[int, str] = {}
         for t in partition.net.transitions:
@@ -132,11 +134,14 @@ class CellGraph:
         }
 
     def delay(self, element: Element) -> float:
-        """After how many units of model time the last token that it puts into a timed place is available.
+        """After how many units of model time the control token that a robot or device passes on is available.
+
+        Other tokens that it puts, into places from which nobody reads, keep its script from nothing.
 
         Raises GameError: that cannot be computed.
         """
         t = self.partition.net.transitions[element.transition]
+        control = self._control_of(element.owner)
         values = element.binding
         binding = {
             s: from_json(s.colset, values[s.name])
@@ -147,10 +152,17 @@ class CellGraph:
         delay, most = self._game.delay(t, binding), 0.0
         for arc in t.arcs:
             is_put = arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH)
-            if is_put and self.partition.net.places[arc.place].colset.timed:
+            is_timed = self.partition.net.places[arc.place].colset.timed
+            if is_put and is_timed and arc.place in control:
                 put = self._game.put(TimedMultiSet(), arc, binding, delay, 0)
                 most = max([most, *(float(x.stamp) for x in put if isinstance(x, Timed))])
         return most
+
+    def _control_of(self, owner: int) -> frozenset[int]:
+        """The places at which the program of a robot or device can be."""
+        if owner not in self._control:
+            self._control[owner] = frozenset(machine(self.partition, owner).control)
+        return self._control[owner]
 
     def _told(self, element: Element) -> tuple[Command, ...]:
         if element.is_step:

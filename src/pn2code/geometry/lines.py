@@ -1,7 +1,8 @@
 """How far the joints of an arm turn within a piece of a line or an arc, although only samples of it are worked out.
 
     follower = Follower(kinematics, path)
-    q, turns = follower.pieces(a, b)   # joint positions in the middle of pieces, and how far each axis may be from them
+    q, turns, lost = follower.pieces(a, b)      # joint positions in the middle of pieces, and how far each axis may be
+                                                # from them; of which pieces that is not known
 
 On a line dq/ds = J(q)^-1 v, where v is the twist of the line. With sigma the least singular value of J at a sample, L a
 bound on how fast J changes with q, and w the norm of the twist times half the distance of samples: as long as
@@ -31,16 +32,21 @@ class Follower:
 
     def __init__(self, kinematics: Kinematics, path: LinearTrajectory) -> None:
         self._k, self._path = kinematics, path
-        self.trouble = ""
         self._speed = float(np.hypot(np.hypot(path.line.length, path.line.angle), path.swivel))
         self._steep = _steepness(kinematics)
         self._shortest = STRAIGHT if path.is_straight else SHORTEST
         self._planned = path.way(path.times)
 
-    def pieces(self, a: Array, b: Array) -> tuple[Array, Array]:
+    @property
+    def trouble(self) -> str:
+        """Why nothing is known of pieces that are lost."""
+        return f"the {self._path.line.name} passes so near to a singularity that what lies between samples is not known"
+
+    def pieces(self, a: Array, b: Array) -> tuple[Array, Array, Flags]:
         """Of the pieces from a to b: joint positions in the middle, (n, axes), and how far axes are from there.
 
-        The latter is inf where it is not known.
+        The latter is inf where it is not known. Pieces that are too short to be divided any more are lost then, and 0
+        is said of them.
         """
         count = len(a)
         parts = np.linspace(0.0, 1.0, SAMPLES + 1)
@@ -53,13 +59,8 @@ class Follower:
         away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
         away[~is_fine] = np.inf
         lost = ~is_fine & ((b - a) * self._speed < self._shortest)
-        if lost.any():
-            self.trouble = (
-                f"the {self._path.line.name} passes so near to a singularity that what lies between samples is not "
-                "known"
-            )
-            away[lost] = 0.0
-        return middle, away
+        away[lost] = 0.0
+        return middle, away, lost
 
     def rates(self, a: Array, b: Array) -> tuple[Array, Array]:
         """How far each axis goes for one unit of the way, anywhere in the pieces from a to b: between these, (n, axes).

@@ -24,6 +24,7 @@ from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
+from pn2code.geometry.where import stands_at
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
@@ -107,7 +108,8 @@ class Look:
         began = time.perf_counter()
         found = self.situations(self.graph)
         seen = self.seen(found)
-        touching = [sides for sides, pair in seen.arms.items() if pair.answer == "no"]
+        bad = {sides: pair for sides, pair in seen.arms.items() if pair.answer == "no"}
+        touching = [sides for sides, pair in bad.items() if not pair.is_held]
         explore = self.options.explore
         zones = None
         if touching and explore is not None:
@@ -219,9 +221,7 @@ class Look:
         t, owner = _who(found, met.elements[0])
         begins = ""
         if activity.end is not None:
-            base = self.cell.robot(owner).T_world_base
-            own = self.cell.robot(owner).of_tool(activity.end.tool, activity.end.T_base_tcp)
-            begins = numbers(pose_of(base @ own))
+            begins = stands_at(self.cell.robot(owner), activity.end)
         does = words(activity.command)
         run = self._run(found, met)
         answer: Verdict = "no" if activity.is_part else "unknown"
@@ -230,10 +230,7 @@ class Look:
 
     def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
-        base = self.cell.robot(leg.robot).T_world_base
-        robot = self.cell.robot(leg.robot)
-        own = robot.of_tool(leg.start.tool, leg.start.T_base_tcp)
-        begins = numbers(pose_of(base @ own))
+        begins = stands_at(self.cell.robot(leg.robot), leg.start)
         held = [p for p in load if p.holder]
         does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
         if on_it := sum(p.up is not None for p in held):
@@ -315,11 +312,18 @@ class Look:
         for leg, other, apart in self.comparison.activities(a, b):
             if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
                 first, second = (_who(found, e)[0] for e in met.elements)
-                does = (words(leg.command), words(other.command))
+                does = (self._does(leg), self._does(other))
                 robots = (leg.robot, other.robot)
                 met_[sides] = _Meeting(robots, (first, second), does, apart, met)
             if apart.outcome == "touch":
                 break
+
+    def _does(self, leg: Leg) -> str:
+        """A command in words; of what is at rest where it stands."""
+        if leg.command is not None:
+            return words(leg.command)
+        where = stands_at(self.cell.robot(leg.robot), leg.start)
+        return f"stands at {where}" if where else "stands"
 
     def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
@@ -414,6 +418,7 @@ def _met(
         tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
         run,
         least=_most_in(apart) if is_touch else None,
+        is_held=is_touch and bool(apart.why),
     )
 
 

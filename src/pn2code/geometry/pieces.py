@@ -30,6 +30,9 @@ class Way(Protocol):
     radii: Array
     is_still: bool
 
+    def begin(self) -> None:
+        """A question begins."""
+
     def knots(self, a: Array, b: Array) -> Knots:
         """Pieces of it."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from pn2code.geometry.answers import Layout, Move, Pair, Proposal
 from pn2code.geometry.claims import kept_apart
@@ -34,7 +34,7 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
     yield from _verdicts(layout)
     for move in layout.moves:
         if move.answer != "yes":
-            yield from _bad_move(move)
+            yield from _bad_move(move, layout.devices)
     for pair in layout.pairs:
         yield from _bad_pair(pair)
     for proposal in layout.proposals:
@@ -123,12 +123,12 @@ def _millimetres(value: float | None) -> str:
     return f"{1000.0 * value:.0f} mm" if value >= 0.01 else f"{1000.0 * value:.1f} mm"
 
 
-def _bad_move(m: Move) -> Iterator[str]:
+def _bad_move(m: Move, devices: Collection[str]) -> Iterator[str]:
     yield ""
     what = f"`{m.transition}`: {m.command}" if m.transition else f"where it {m.command}"
     yield f"{_ANSWERS[m.answer]}: {m.robot}, {what}"
     if m.begins:
-        yield f"  from TCP pose {m.begins}"
+        yield f"  from {m.begins}" if m.robot in devices else f"  from TCP pose {m.begins}"
     yield f"  {m.problem}"
     yield from _run(m.run)
 
@@ -139,6 +139,8 @@ def _bad_pair(p: Pair) -> Iterator[str]:
     for robot, does in zip(p.robots, p.doing, strict=True):
         yield f"  {robot or 'part'}: {does}"
     yield f"  {p.says}"
+    if p.is_held:
+        yield "  let the net command that the clamp opens, and wait for the answer, before the part is taken away"
     yield from _run(p.run)
     if p.picture:
         yield f"  picture: {p.picture}"

@@ -120,6 +120,8 @@ class Sweeper:
         is_free: bool,
     ) -> Apart:
         most = self.queries + MOST_QUERIES
+        a.begin()
+        b.begin()
         front = Front.whole(a, b)
         found = Found(a, b, is_free=is_free)
         while len(front.pieces):
@@ -175,6 +177,7 @@ class Sweeper:
     def around(self, a: Track, kind: Literal["scene", "self"]) -> Apart:
         """How near a leg comes to the scene, or to the arm itself; where it touches, how deep."""
         self._show(a.parts)
+        a.begin()
         begun = self.queries
         most = MOST_QUERIES
         count = itertools.count()
@@ -297,6 +300,8 @@ class Two:
 def deepest(two: Two, known: Apart) -> Apart:
     """The least slack of two legs that is less than what is known, and what is certain of it: best first."""
     a, b, best = two.a, two.b, known
+    a.begin()
+    b.begin()
     begun, count = two.sweeper.queries, itertools.count()
     least = best.nearest
     heap = [(-math.inf, next(count), np.array([0.0, 1.0, 0.0, 1.0]))]

@@ -102,16 +102,17 @@ class Knots:
     Args:
         q: joint positions in the middle, (n, axes).
         ends: of the capsules in the world, (n, links, 2, 3).
-        spread: (n, links), see above.
+        spread: (n, links), see above; lost: nothing is known of these pieces, whatever it says, (n,).
     """
 
     q: Array
     ends: Array
     spread: Array
+    lost: Flags
 
     def pick(self, rows: Numbers) -> Knots:
         """Some of them."""
-        return Knots(self.q[rows], self.ends[rows], self.spread[rows])
+        return Knots(self.q[rows], self.ends[rows], self.spread[rows], self.lost[rows])
 
 
 class Track:
@@ -141,6 +142,7 @@ class Track:
         self._rows: dict[tuple[float, float], tuple[int, int]] = {}
         self._kept: list[Knots] = []
         self._follower: Follower | None = None
+        self._is_lost = False
         self.is_still = isinstance(leg.path, Still) or (
             isinstance(leg.path, JointTrajectory) and not np.any(leg.path.turns)
         )
@@ -155,8 +157,12 @@ class Track:
 
     @property
     def trouble(self) -> str:
-        """Why nothing is known of what lies between samples; "": something is."""
-        return self._follower.trouble if self._follower is not None else ""
+        """Why nothing is known of what lies between samples of pieces that this question was about; "": it is."""
+        return self._follower.trouble if self._follower is not None and self._is_lost else ""
+
+    def begin(self) -> None:
+        """A question begins: what others have asked before, here or in another process, is none of its business."""
+        self._is_lost = False
 
     def knots(self, a: Array, b: Array) -> Knots:
         """The pieces from fraction a to b of the way, (n,) each; each is worked out once."""
@@ -170,19 +176,24 @@ class Track:
                 self._rows[keys[i]] = (first, row)
         where = [self._rows[key] for key in keys]
         if len({batch for batch, _ in where}) == 1:
-            return self._kept[where[0][0]].pick(np.array([row for _, row in where]))
-        return Knots(
-            np.stack([self._kept[batch].q[row] for batch, row in where]),
-            np.stack([self._kept[batch].ends[row] for batch, row in where]),
-            np.stack([self._kept[batch].spread[row] for batch, row in where]),
-        )
+            found = self._kept[where[0][0]].pick(np.array([row for _, row in where]))
+        else:
+            found = Knots(
+                np.stack([self._kept[batch].q[row] for batch, row in where]),
+                np.stack([self._kept[batch].ends[row] for batch, row in where]),
+                np.stack([self._kept[batch].spread[row] for batch, row in where]),
+                np.stack([self._kept[batch].lost[row] for batch, row in where]),
+            )
+        self._is_lost = self._is_lost or bool(found.lost.any())
+        return found
 
     def _worked_out(self, a: Array, b: Array) -> Knots:
         path = self.leg.path
         assert path is not None
         rigid: Array | None = None
+        lost = np.zeros(len(a), bool)
         if self._follower is not None:
-            q, turns = self._follower.pieces(a, b)
+            q, turns, lost = self._follower.pieces(a, b)
             rigid = (b - a) / 2.0
             if isinstance(path, AlongTrajectory):
                 q, own = path.whole(q, (a + b) / 2.0), turns
@@ -193,7 +204,7 @@ class Track:
             turns = np.abs(path.turns) * ((b - a) / 2.0)[:, None]
         else:
             q, turns = path.on_way(a), np.zeros((len(a), len(self.shape.robot.arm.axes)))
-        return self._placed(q, turns, rigid)
+        return self._placed(q, turns, rigid, lost)
 
     def boxes(self, q: Array) -> Array:
         """The corners of each link in the world, at joint positions (n, axes): (n, links, 8, 3)."""
@@ -215,7 +226,7 @@ class Track:
         half = (b - a) / 2.0
         if self._follower is not None:
             low, high = self._follower.rates(a, b)
-            _, turns = self._follower.pieces(a, b)
+            _, turns, _ = self._follower.pieces(a, b)  # of what is lost, `low` is not known
             if isinstance(path, AlongTrajectory):
                 low, high = (self._whole(path, x) for x in (low, high))
                 own, turns = turns, np.abs(path.delta) * half[:, None]
@@ -274,7 +285,7 @@ class Track:
             spread = np.where(self._moved[:, j], spread + way, spread)
         return fast
 
-    def _placed(self, q: Array, turns: Array, rigid: Array | None) -> Knots:
+    def _placed(self, q: Array, turns: Array, rigid: Array | None, lost: Flags) -> Knots:
         kinematics = self.shape.robot.kinematics
         frames = kinematics.link_frames(q)
         axes = kinematics.axes_of(frames)
@@ -300,7 +311,7 @@ class Track:
             for i, link in enumerate(self.links):
                 if link.joint in (last, turns.shape[1] + 1):
                     spread[:, i] = np.minimum(spread[:, i], self._on_line(link, rigid))
-        return Knots(q, ends, spread)
+        return Knots(q, ends, spread, lost)
 
     def _on_line(self, link: Link, half: Array) -> Array:
         """How far a link beyond the last axis goes in half a piece of a line: as the TCP does."""

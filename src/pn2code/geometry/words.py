@@ -93,12 +93,14 @@ def _by(tcp: str) -> str:
 
 def _with(along: tuple[Along, ...]) -> str:
     """External axes, in mm and degrees."""
-    shown = (
-        f"{a.axis} {_short(a.position * (1000.0 if a.is_track else math.degrees(1.0)))}"
-        for a in along
-    )
+    shown = (f"{a.axis} {position(a.position, a.is_track)}" for a in along)
     text = ", ".join(shown)
     return f" with {text}" if text else ""
+
+
+def position(value: float, slides: bool) -> str:
+    """Of an external axis, mm or degrees."""
+    return _short(value * (1000.0 if slides else math.degrees(1.0)))
 
 
 def numbers(pose: Pose) -> str:

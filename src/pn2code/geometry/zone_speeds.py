@@ -60,6 +60,7 @@ def slow_enough(watch: ZoneWatch, track: Track, load: Load) -> tuple[Verdict, st
     for t in np.linspace(0.0, path.duration, _FIRST + 1).tolist():
         if why := _seen(watch, track, load, t):
             return "no", why
+    track.begin()
     pace = _Pace(path)
     edges = np.linspace(0.0, 1.0, 17)
     pieces = np.stack([edges[:-1], edges[1:]], axis=1)

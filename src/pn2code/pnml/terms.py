@@ -392,6 +392,8 @@ class Terms:
         counted = arguments[-1]
         term = self._term(counted, sort)
         count = self._number(arguments[0]) if len(arguments) == 2 else Term((("1", node),), None)
+        if not _text(count).strip("0"):  # CPN Tools would want a token, to bind what is in it
+            return self._times(count, arguments[0], self._many(term, counted, None), counted, node)
         if not term.many:
             code = (*_closed(count, arguments[0]), ("`", node), *_closed(term, counted))
             digits = _text(count)

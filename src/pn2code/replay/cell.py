@@ -21,6 +21,7 @@ from pn2code.robot.looks import Look
 from pn2code.robot.parts import PartChange, Parts
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
@@ -43,6 +44,11 @@ def describe(cell: RobotCell) -> Json:
             if isinstance(kind, PartKind)
             else _seen_of(kind.tool.urdf, store)
             for kind in cell.kinds
+        },
+        "tools": {
+            kind.name: frame(kind.tool.T_flange_tcp)
+            for kind in cell.kinds
+            if isinstance(kind, ToolKind)
         },
         "zones": [_zone(z) for z in cell.zones.values()],
         "warningClearance": cell.scene.warning_clearance,
@@ -100,7 +106,10 @@ def tool_in_use(robot: CellRobot, entries: Iterable[PartRecord], t: float) -> st
 
 
 def _robot(robot: CellRobot, store: Meshes) -> Json:
-    """Links are numbered, the base first; each joint says between which links it is, and which axis moves it."""
+    """Links are numbered, the base first; each joint says between which links it is, and which axis moves it.
+
+    `clamps`: of a device, the axes of both jaws of each clamp, which are together its gap; `changes`: it changes tools.
+    """
     trees = [("", robot.arm.urdf)] + ([(_TOOL, robot.tool.urdf)] if robot.tool else [])
     links = [prefix + name for prefix, tree in trees for name in (tree.root, *_children(tree))]
     number = {name: i for i, name in enumerate(links)}
@@ -127,9 +136,12 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
         }
         at = len(_from_root(robot.arm.urdf))
         joints.insert(at, mount)
+    clamps = {c.axis.name: [axes[jaw] for jaw in c.jaws] for c in robot.axes.clamps}
     return {
         "name": robot.name,
         **({"device": True} if robot.is_device else {}),
+        **({"changes": True} if robot.tools else {}),
+        **({"clamps": clamps} if clamps else {}),
         "base": frame(robot.T_world_base),
         "home": [float(v) for v in robot.home],
         "links": [

@@ -477,7 +477,7 @@ class BulletBackend:
                 one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
                 yield Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
         yield from self._on_plates(a, limit)
-        yield from self._carried(a, limit)
+        yield from self._every_carried(a, limit)
         yield from self._beside_riders(a, limit)
 
     def _on_plates(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
@@ -627,18 +627,25 @@ class BulletBackend:
         return [*touching.values(), best] if best is not None else list(touching.values())
 
     def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
-        """Between the part that a robot carries and the robot itself, but for its tool and the last axis.
+        """Of what is carried and the links of its robot the nearest, and all that it may touch."""
+        found = list(self._every_carried(a, limit))
+        apart = [gap for gap in found if gap.allowed is None]
+        nearest = min(apart, key=lambda gap: gap.distance, default=None)
+        touching = [gap for gap in found if gap.allowed is not None]
+        return touching if nearest is None else [nearest, *touching]
 
-        On a turntable it may be put.
+    def _every_carried(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+        """Between what a robot carries (parts, a tool) and the robot itself, but for its tool and the last axis.
+
+        On a turntable it may be put. How far a link may still come differs from one to the other: who looks between
+        instants needs them all.
         """
         name = a.robot.name
         if a.robot.is_device:
-            return []
+            return
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         tables = {a.index[t] for t in a.robot.arm.tables}
         near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
-        best: Clearance | None = None
-        plates = []
         for side in self._sides(a):
             for i in a.links if not side.links and not side.rides else ():
                 if i in near:
@@ -648,12 +655,7 @@ class BulletBackend:
                 for c in self._p.getClosestPoints(
                     side.id, a.body, limit, -1, i, physicsClientId=self._client
                 ):
-                    gap = Clearance("self", name, side.whole, other, c[8], allowed, c[5], c[6])
-                    if i in tables:
-                        plates.append(gap)
-                    elif best is None or c[8] < best.distance:
-                        best = gap
-        return plates if best is None else [best, *plates]
+                    yield Clearance("self", name, side.whole, other, c[8], allowed, c[5], c[6])
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
         key = ("self", a.robot.name)

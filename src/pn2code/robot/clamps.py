@@ -152,4 +152,5 @@ def on_nothing(held: Held, near: Near) -> str:
     if near.part is None:
         return text
     away = 1000.0 * (near.off + near.part.kind.tolerance)
-    return f"{text}; the nearest, `{near.part.name}`, is {away:.1f} mm away"
+    held_by = f" in the tool of `{near.part.holder}`," if near.part.holder else ""
+    return f"{text}; the nearest, `{near.part.name}`,{held_by} is {away:.1f} mm away"

@@ -56,9 +56,17 @@ ROBOT_PAYLOAD = register(
     "The masses of tools (`inertial` in their URDF files) and of parts (`mass` in `[parts.KIND]`) are compared with "
     "what the URDF file of the arm says: `payload` in kg, and the moments about axes 4, 5 and 6.",
 )
+ROBOT_SPEED = register(
+    "robot-speed",
+    "a line or an arc has a speed that it never comes to",
+    "From rest to rest, with the acceleration of `[motion]`, the longest way within the reach of the arm does not "
+    "suffice for this speed; so it has no effect, and is mostly a wrong unit. Speeds are in m/s in cell.toml, and in "
+    "mm/s in nets and scripts.",
+)
 ROBOT_REACH = register(
     "robot-reach",
     "a robot cannot reach a constant pose",
     "A script moves to a pose that is known before it runs, but no joint position within the limits of the arm puts "
-    "the tool there. Poses that come in messages are known only in a run.",
+    "the tool there, or a tool lies where the robot that changes it cannot come. Poses that come in messages are known "
+    "only in a run.",
 )

@@ -8,7 +8,7 @@
 A situation is a state of the cell, where its arms stand, and what is under way with the time that it still takes. At
 an instant everything happens that can, in each order that the net permits; then what can be under way begins; then
 time goes by until the first of it ends. A sensor says anything. A cycle ends when the supervisor has finished and the
-arms rest, as a run does.
+arms rest, as a run does: a command that is under way then is done to its end, and none is begun after it.
 
 In a timed net the clock is under way as well: each second it goes on by one unit, and time stamps come nearer, in
 whatever state the cell is then. A script waits exactly as long as its control token has a delay.
@@ -40,8 +40,10 @@ TICKS = -2
 """What the clock has under way: the rest of a second."""
 WAITS = -3
 """What a script has under way that waits."""
+LAST = -4
+"""What somebody has under way that does no more after it, though its transition has more commands."""
 UnderWay = tuple[tuple[int, int, int], ...]
-"""By owner in order, the clock first: (owner, element, `TICKS` or `WAITS`, ns that it still takes)."""
+"""By owner in order, the clock first: (owner, element, `TICKS`, `WAITS` or `LAST`, ns that it still takes)."""
 Situation = tuple[int, tuple[Stand, ...], UnderWay]
 
 
@@ -163,6 +165,7 @@ class Search:
 
     def _after(self, node: int) -> list[Arc]:
         state, stands, under_way = self.situations[node]
+        is_over = state in self.graph.over
         busy = {owner: element for owner, element, _ in under_way}
         at_once: list[tuple[int, int]] = []
         begins: dict[int, list[tuple[int, Doing]]] = {}
@@ -189,14 +192,17 @@ class Search:
                 arm = self.doings.arm_of.get(owner)
                 doing = self.doings.of(element, None if arm is None else stands[arm])
             if doing is not None:
-                begins.setdefault(owner, []).append((element, doing))
+                if not is_over:  # who hears that the supervisor has finished begins nothing more
+                    begins.setdefault(owner, []).append((element, doing))
                 continue
             at_once.append((element, target))
             if kind is Kind.TOLD:
                 mixed.add(owner)
         out = list(self._at_once(state, stands, under_way, at_once, begins))
-        for owner in mixed & begins.keys():  # it may choose what takes time
-            out += self._begun(state, stands, under_way, {owner: begins[owner]})
+        # What can be begun may be, before the supervisor has finished; and who has a choice may choose what takes time.
+        is_last = not is_over and any(target in self.graph.over for _, target in at_once)
+        for owner in begins if is_last else mixed & begins.keys():
+            out += self._begun(node, {owner: begins[owner]})
         if not ticks and self._calm not in self.graph.marked[state]:
             ticks = [(BEGINS, state)]  # no time stamp lies ahead
         now = [u for u in under_way if u[2] == 0]
@@ -206,7 +212,7 @@ class Search:
         if out or node in self.ends:
             return out
         if begins:
-            return list(self._begun(state, stands, under_way, begins))
+            return list(self._begun(node, begins))
         going = [u for u in under_way if u[2] < FOREVER // 2]
         is_waiting = any(element >= 0 for element, _ in ticks)
         if all(u[0] == CLOCK for u in going) and not is_waiting:
@@ -241,12 +247,40 @@ class Search:
             for other, choices in begins.items():
                 if other != owner and not self._enabled(target).issuperset(e for e, _ in choices):
                     self.why = self.why or "overtaken"
-            after = self._with_wait(under_way, owner, element)
-            yield (self._number((target, stands, after)), 0, element)
+            after = self._with_wait(under_way, owner, element, target)
+            is_last = target in self.graph.over and state not in self.graph.over
+            for rest in self._last(stands, after) if is_last else (after,):
+                yield (self._number((target, stands, rest)), 0, element)
 
-    def _with_wait(self, under_way: UnderWay, owner: int, element: int) -> UnderWay:
-        """With the wait of a script after this element."""
-        ns = self.doings.waits(element) if self._kinds[element] is Kind.TOLD else 0
+    def _last(self, stands: tuple[Stand, ...], under_way: UnderWay) -> Iterator[UnderWay]:
+        """What is still done of what is under way when the supervisor finishes: of several commands the one that is."""
+        choices = [[u] if u[1] < 0 else self._commands_now(stands, u) for u in under_way]
+        return itertools.product(*choices)
+
+    def _commands_now(
+        self, stands: tuple[Stand, ...], entry: tuple[int, int, int]
+    ) -> list[tuple[int, int, int]]:
+        """The rest of the command that is under way; where one ends just now, of the next one, too."""
+        owner, element, ns = entry
+        arm = self.doings.arm_of.get(owner)
+        doing = self.doings.of(element, None if arm is None else stands[arm])
+        assert doing is not None
+        if ns >= FOREVER // 2:
+            return [entry]
+        out = []
+        now, begin = doing.ns - ns, 0
+        for number, part in enumerate(doing.parts, 1):
+            end = begin + part.ns
+            if begin - TIE <= now <= end + TIE:
+                is_all = number == len(doing.parts)
+                out.append(entry if is_all else (owner, LAST, max(0, end - now)))
+            begin = end
+        return list(dict.fromkeys(out))
+
+    def _with_wait(self, under_way: UnderWay, owner: int, element: int, target: int) -> UnderWay:
+        """With the wait of a script after this element; it does not begin one after the supervisor's end."""
+        is_begun = self._kinds[element] is Kind.TOLD and target not in self.graph.over
+        ns = self.doings.waits(element) if is_begun else 0
         return tuple(sorted((*under_way, (owner, WAITS, ns)))) if ns else under_way
 
     def _enabled(self, state: int) -> frozenset[int]:
@@ -254,15 +288,16 @@ class Search:
             self._told[state] = frozenset(element for element, _ in self.graph.arcs[state])
         return self._told[state]
 
-    def _begun(
-        self,
-        state: int,
-        stands: tuple[Stand, ...],
-        under_way: UnderWay,
-        begins: dict[int, list[tuple[int, Doing]]],
-    ) -> Iterator[Arc]:
-        """Everybody who can begin something does; who has a choice begins any of it."""
+    def _begun(self, node: int, begins: dict[int, list[tuple[int, Doing]]]) -> Iterator[Arc]:
+        """Everybody who can begin something does; who has a choice begins any of it.
+
+        What cannot be carried out stops a run there, whatever others could still do.
+        """
+        state, stands, under_way = self.situations[node]
         for choice in itertools.product(*begins.values()):
+            for _, doing in choice:
+                if doing.fault:
+                    self.faults.setdefault(doing.fault, node)
             new = [(o, e, doing.ns) for o, (e, doing) in zip(begins, choice, strict=True)]
             together = tuple(sorted((*under_way, *new)))
             yield (self._number((state, stands, together)), 0, BEGINS)
@@ -292,7 +327,7 @@ class Search:
                 for mark, target in ticks:
                     yield (self._number((target, stands, left)), ns, mark)
                 continue
-            if element == WAITS:
+            if element in (WAITS, LAST):
                 yield (self._number((state, stands, left)), ns, BEGINS)
                 continue
             after = stands
@@ -305,7 +340,7 @@ class Search:
             if owner not in ending:
                 self.why = self.why or "overtaken"
             for target in ending.get(owner, ()):
-                later = self._with_wait(left, owner, element)
+                later = self._with_wait(left, owner, element, target)
                 yield (self._number((target, after, later)), ns, element)
 
     def _stop(self, node: int, stands: tuple[Stand, ...], under_way: UnderWay) -> None:

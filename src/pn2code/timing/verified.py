@@ -172,7 +172,8 @@ class _Judge:
             return open_("of events with durations only `fires(..)` is looked at")
         limit = math.floor(float(asked.time) * NS)
         search = one.search
-        wait = longest_wait(search.successors, first, second, _ends(search, second))
+        over = _over(search, second)
+        wait = longest_wait(search.successors, first, second, over | search.ends, over)
         if wait.ns is None:
             faults = [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
             if wait.why in _WHY or (wait.why == "never" and faults):
@@ -247,14 +248,14 @@ class _Judge:
         )  # fmt: skip
 
 
-def _ends(search: Search, second: Is) -> frozenset[int]:
+def _over(search: Search, second: Is) -> frozenset[int]:
     """The situations after which the event may not come any more, as the supervisor has finished.
 
-    A robot ends where it hears of that: what is under way then it does to its end, but nothing that follows. For what a
-    device does nobody waits.
+    A robot ends where it hears of that: the command that is under way then it does to its end, but nothing that
+    follows. For what a device does nobody waits.
     """
     over = search.graph.over
-    return frozenset(search.ends).union(
+    return frozenset(
         i
         for i, (state, _, under_way) in enumerate(search.situations)
         if state in over and not any(second(element) for _, element, _ in under_way)

@@ -38,7 +38,11 @@ class Wait:
 
 
 def longest_wait(
-    successors: Sequence[Sequence[Arc]], first: Is, second: Is, ends: Collection[int]
+    successors: Sequence[Sequence[Arc]],
+    first: Is,
+    second: Is,
+    ends: Collection[int],
+    over: Collection[int] = (),
 ) -> Wait:
     """The longest time from an event to the next one of the other kind.
 
@@ -46,6 +50,7 @@ def longest_wait(
         successors: (node, ns, mark) of each node's arcs; node 0 is the start.
         first, second: whether the mark of an arc is such an event.
         ends: the nodes in which the cycle may be over.
+        over: those of them from which the second event is not waited for as nobody begins it any more.
     """
     begun: dict[int, tuple[int, int]] = {}
     for node, arcs in enumerate(successors):
@@ -74,9 +79,12 @@ def longest_wait(
         after = [(-1 if n == last else inside[n - 1], m) for n, m in way[1:]]
         return Wait(ns, why, before, ((node, mark), *after))
 
-    lost = next((i for i in range(1, last) if not ways.leading[i]), 0)
+    never = [i for i in range(1, last) if not ways.leading[i]]
+    lost = next((i for i in never if inside[i - 1] not in over), 0)
     if lost:
         return told(_way(graph, {lost}), "never")
+    if never:
+        return Wait(None, "ends")
     if ways.cycle:
         there = _way(graph, {ways.cycle[0]})
         return told([*there, *_round(graph, ways.cycle)], "repeats")

@@ -41,6 +41,8 @@ from pn2code.run.handling import PartKeeper
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
 from pn2code.tdl.messages import along_to_si, axes_to_si, to_si
+from pn2code.verdict.paces import most
+from pn2code.verdict.racks import out_of_reach
 from pn2code.verdict.scene_sensors import blind
 
 _ToPose = MoveJoint | MoveLinear | MoveCircular
@@ -70,8 +72,10 @@ def look_in_space(
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
         blind(cell, chosen, where, d)
+        out_of_reach(cell, chosen, where, d)
         for ir in programs:
             _kind_of_arm(cell, ir, where, d)
+            _speeds(cell, ir, where, d)
     arms = Arms.of(config, d, partial=False)
     if arms is not None:
         for ir in programs:
@@ -162,6 +166,34 @@ def _kind_of_arm(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> No
                     f"{count} axes",
                     origin,
                     hint="only arms with seven axes have one; leave `arm_angle` of the primitive out",
+                )
+
+
+def _speeds(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> None:
+    """Constant speeds that no line or arc of the arm comes to."""
+    robot = next((r for r in cell.robots if r.name == ir.name), None)
+    if robot is None:
+        return
+    constants = _constants_of(ir)
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, move in _moves(body, ir.origin):
+            if move.speed is None or move.motion not in (t.Motion.LINEAR, t.Motion.CIRCULAR):
+                continue
+            try:
+                speed = float(cast(float, evaluate(move.speed, constants))) / 1000.0
+            except ScriptError:
+                continue  # it depends on what the program is told
+            is_arc = move.motion is t.Motion.CIRCULAR
+            longest = most(robot, cell.motion, is_arc=is_arc)
+            if speed > longest.speed:
+                what = "arc" if is_arc else "line"
+                d.warning(
+                    codes.ROBOT_SPEED,
+                    f"the speed of {speed:g} m/s has no effect{where}: within reach of robot `{ir.name}` no {what} is "
+                    f"longer than {longest.way:.1f} m, and with {cell.motion.linear_acceleration:g} m/s² its TCP comes "
+                    f"to {longest.speed:.1f} m/s at most",
+                    origin,
+                    hint="speeds are in m/s in cell.toml, and in mm/s in nets and scripts",
                 )
 
 

@@ -30,6 +30,7 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.covering import Covering
 from pn2code.verify.exploring.covering import write as write_covering
@@ -115,6 +116,9 @@ def _bindings_of_cell(
     if control is None:
         return closed
     running = control.running
+    if running is not None and control.reduced:
+        # What was looked at does more than the cell: in it robots go on after the supervisor's end.
+        running = Running.of(control.partition, asked.properties.predicates)
     said: Sequence[Mapping[str, Any]] = ()
     seen = control.found
     is_choosing = False
@@ -149,7 +153,7 @@ def _bindings_of_cell(
                 with suppress(OSError):
                     split.restore(Path(row["trace"]))
         about = split.properties
-    looked = replace(control, found=seen)
+    looked = replace(control, found=seen, running=running, reduced=False)
     return tuple(
         of_cell(
             about,

@@ -11,7 +11,7 @@ from helpers.robot_cells import pose_mm, riveting_cell
 from pn2code.geometry.in_zones import _MOST_PIECES as MOST_PIECES
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
-from pn2code.geometry.tracks import Track
+from pn2code.geometry.tracks import ArmShape, Link, Track
 from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.motion import LinearTrajectory, plan_lin
 from pn2code.robot.transforms import matrix_of
@@ -32,17 +32,39 @@ def test_it_is_given_up_after_few_pieces() -> None:
     path = straight_line()
     follower = Follower(path.kinematics, path)
     edges = np.linspace(0.0, 1.0, 17)
-    pieces, looked = np.stack([edges[:-1], edges[1:]], axis=1), 0
+    pieces, looked, given_up = np.stack([edges[:-1], edges[1:]], axis=1), 0, False
     while len(pieces):
         looked += len(pieces)
-        _, away = follower.pieces(pieces[:, 0], pieces[:, 1])
+        _, away, lost = follower.pieces(pieces[:, 0], pieces[:, 1])
+        given_up |= bool(lost.any())
         left = pieces[np.isinf(away).any(axis=1)]
         middle = left.mean(axis=1)
         pieces = np.concatenate(
             [np.stack([left[:, 0], middle], axis=1), np.stack([middle, left[:, 1]], axis=1)]
         )
-    assert "so near to a singularity" in follower.trouble
+    assert given_up and "so near to a singularity" in follower.trouble
     assert looked < MOST_PIECES
+
+
+def track_of(path: LinearTrajectory) -> Track:
+    robot = riveting_cell("good").robot("robot1")
+    low, high = np.full((2, 3), 0.1) * [[-1.0], [1.0]]
+    shape = ArmShape(robot, (Link.of("robot1/tool", 7, np.eye(4), low, high),))
+    return Track(shape, cast(Leg, SimpleNamespace(path=path, robot="robot1", kind="lin")))
+
+
+def test_each_question_has_its_own_trouble() -> None:
+    """Another question may have been asked in another process, or not have been asked yet."""
+    track = track_of(straight_line())
+    edges = np.linspace(0.0, 1.0, 2001)
+    lost = np.flatnonzero(track.knots(edges[:-1], edges[1:]).lost)
+    assert 0 < len(lost) < 1000 and track.trouble
+    some, others = lost[:1], np.array([0])
+    assert lost[0] > 0
+    for piece, is_lost in ((others, False), (some, True), (others, False)):
+        track.begin()
+        track.knots(edges[piece], edges[piece + 1])
+        assert bool(track.trouble) is is_lost
 
 
 def test_whether_it_is_slow_enough_is_not_known() -> None:
@@ -53,6 +75,7 @@ def test_whether_it_is_slow_enough_is_not_known() -> None:
         leg=cast(Leg, SimpleNamespace(path=path)),
         robot="robot1",
         trouble="",
+        begin=lambda: None,
         knots=lambda *_: SimpleNamespace(q=nothing, spread=nothing),
         speeds=lambda *_: nothing,
         boxes=lambda *_: nothing,

@@ -109,7 +109,7 @@ def test_capsules_are_around_the_shapes(cell: RobotCell, shapes: dict[str, ArmSh
             q = np.clip(q, arm.lower, arm.upper)
             backend.set_joints(robot.name, q)
             track = Track(shapes[robot.name], planner.standing(planner.home(robot.name)))
-            knots.append((track, track._placed(q[None], np.zeros((1, 6)), None)))
+            knots.append((track, track._placed(q[None], np.zeros((1, 6)), None, np.zeros(1, bool))))
         (a, one), (b, other) = knots
         off = gaps(one, a.radii, other, b.radii)[0]
         for gap in backend.pairs("robots", "robot1", 5.0, "robot2"):

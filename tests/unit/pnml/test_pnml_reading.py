@@ -336,6 +336,19 @@ def test_variable_on_an_input_arc_in_a_difference(tmp_path: Path) -> None:
     assert size(found) == (4, 3)
 
 
+def test_no_token_is_wanted_of_which_there_are_to_be_none(tmp_path: Path) -> None:
+    """CPN Tools wants one for 0`y, to bind y; in PNML y has any value of its sort."""
+    text = net(
+        place("P", "Abc", number(1, const("a"))),
+        place("Q", "Abc"),
+        transition("t", op("inequality", var("x"), var("y"))),
+        arc("P", "t", op("add", number(1, var("x")), number(0, var("y")))),
+        arc("Q", "t", number(0, var("y"))),
+        declarations=ABC,
+    )
+    assert enabled(text, tmp_path) == ["x=a,y=b", "x=a,y=c"]
+
+
 def test_free_variables_range_over_large_sorts(tmp_path: Path) -> None:
     """CPN Tools enumerates at most 100 values; PNML has no such limit."""
     large = named("Large", '<finiteintrange start="0" end="149"/>') + variable("n", "Large")

@@ -13,7 +13,10 @@ from helpers.door_cell import TOML
 from helpers.robot_cells import nowhere
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
-from pn2code.geometry.legs import Planner
+from pn2code.geometry.answers import Layout, Move
+from pn2code.geometry.legs import Planner, Stand
+from pn2code.geometry.report import text
+from pn2code.geometry.where import stands_at
 from pn2code.robot.clamps import closed_on, closes, closing, nearest, on_nothing, shut
 from pn2code.robot.commands import Along, Handling, MoveExternal, MoveJoint, Pose, ToolAction
 from pn2code.robot.executor import RobotExecutor
@@ -75,7 +78,29 @@ def test_what_it_closes_on_is_as_near_as_can_be_gripped() -> None:
     assert on_nothing(held, near) == (
         "`mill/vice` closes on nothing: no part is at `inVice`; the nearest, `blank.1`, is 5.1 mm away"
     )
+    held_out = Part("blank.1", blank, np.eye(4), "arm")
+    assert on_nothing(held, nearest(cell, held, [(held_out, frame)])).endswith(
+        "; the nearest, `blank.1`, in the tool of `arm`, is 5.1 mm away"
+    )
     assert on_nothing(held, nearest(cell, held, [])).endswith("no part is at `inVice`")
+
+
+def test_where_a_device_stands_is_said_by_its_axes() -> None:
+    """It has no TCP; `check --geometry` says so where its moves begin."""
+    mill = cell_of().robot("mill")
+    stand = Stand(0, "mill", np.array([0.9, 0.06, 0.0605]), np.eye(4))
+    assert stands_at(mill, stand) == "door 900, vice 120.5"
+    move = Move(
+        "mill",
+        "Mill.Close",
+        "external with vice 60",
+        stands_at(mill, stand),
+        "ptp",
+        "no",
+        "it is not",
+    )
+    layout = Layout("", 1, 1, (move,), (), 0, 0, 0.0, devices=("mill",))
+    assert "\n  from door 900, vice 120.5\n" in text([layout], full=False)
 
 
 def test_it_does_not_close_on_what_is_on_the_way() -> None:

@@ -11,6 +11,7 @@ import pytest
 from helpers.tool_cell import TOML, placed
 from pn2code.arms import Arms
 from pn2code.replay.cell import at_start, describe, put, tool_in_use
+from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import (
     Along,
     Handling,
@@ -22,7 +23,7 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
-from pn2code.robot.parts import PartFault, Parts, carried_to
+from pn2code.robot.parts import Part, PartFault, Parts, carried_to
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones import ZoneWatch
@@ -313,7 +314,10 @@ def test_a_tool_in_use_is_in_zones(tmp_path: Path) -> None:
 def test_what_the_replay_page_is_told(tmp_path: Path) -> None:
     """A tool is one kind of things, with the shapes of all links; one that is in use hangs at the coupling."""
     cell = read(tmp_path, TOML.replace("tools = [", 'begins_with = "driver"\ntools = ['))
-    body, bit = describe(cell)["kinds"]["driver"]
+    described = describe(cell)
+    assert described["robots"][0]["changes"] is True
+    assert np.array(described["tools"]["driver"]).reshape(4, 4)[2, 3] == pytest.approx(0.28)
+    body, bit = described["kinds"]["driver"]
     assert np.array(body[1]).reshape(4, 4)[2, 3] == pytest.approx(0.08)
     assert np.array(bit[1]).reshape(4, 4)[2, 3] == pytest.approx(0.16 + 0.06)
     start = at_start(cell)
@@ -334,6 +338,27 @@ def test_contacts_that_are_permitted(cell: RobotCell) -> None:
     assert ("arm/gripper", "rack") in rules and ("arm/gripper", "blank.*") in rules
     assert ("arm/driver", "rack") not in rules and ("arm/gripper", "stand") not in rules
     assert ("arm/driver", "blank.*") not in rules and ("arm/link_5", "gripper") not in rules
+
+
+@pytest.mark.bullet
+def test_sweeps_measure_the_tool_and_the_part_in_it(cell: RobotCell) -> None:
+    """The part comes further on a way than the tool, so that what is known of the nearer one does not tell."""
+    tool = Part("gripper", cell.tools["gripper"], np.eye(4), "arm")
+    part = Part(
+        "blank.1", cell.parts["blank"], matrix_of(Pose(0.0, 0.0, 0.2, 0.0, 0.0, 0.0)), "arm"
+    )
+    backend = BulletBackend(cell, looks=False)
+    try:
+        backend.set_part(tool)
+        backend.set_part(part)
+        backend.set_joints("arm", np.array(cell.robots[0].home))
+        found = {(x.a, x.b): x.distance for x in backend.pairs("self", "arm", 1.0)}
+        seen = [x for x in backend.clearances(1.0) or () if x.kind == "self"]
+    finally:
+        backend.close()
+    for link in ("link_3", "link_4", "link_5"):
+        assert ("arm/gripper", f"arm/{link}") in found and ("arm/blank.1", f"arm/{link}") in found
+    assert {x.distance for x in seen} == {min(found.values())}
 
 
 # --- mistakes ------------------------------------------------------------------------------------

@@ -92,6 +92,27 @@ def test_what_is_left_does_all_that_the_cell_does(tmp_path: Path, seed: int) -> 
     assert steps > 15
 
 
+def test_what_changes_a_reference_is_not_forgotten(tmp_path: Path) -> None:
+    """Whoever reads it would go on otherwise: here arm 2 goes to another place once a part is good."""
+    text = tending(3).replace("  var j: JOB;", "  globref count = 0;\n  var j: JOB;")
+    for place, says in (("Good", "(count := !count + 1; ())"), ("poseArm2", "at (3 + !count)")):
+        before = {"Good": "()", "poseArm2": "at 3"}[place]
+        assert f"      out {place} : {before}\n" in text
+        text = text.replace(f"      out {place} : {before}\n", f"      out {place} : {says}\n")
+    found, partition = opened(tmp_path, text)
+    less = forgetful(partition, found.storage)
+    assert less is not None and "Good" not in names(partition, less) >= {"Scrap", "Judged"}
+
+
+def test_an_initial_marking_that_changes_a_reference_is_not_forgotten(tmp_path: Path) -> None:
+    text = tending(3).replace("  var j: JOB;", "  globref count = 0;\n  var j: JOB;")
+    assert "place Feeder = 3" in text
+    text = text.replace("place Feeder = 3", "place Feeder : UNIT = (count := 5; 3`())")
+    found, partition = opened(tmp_path, text)
+    less = forgetful(partition, found.storage)
+    assert less is not None and "Feeder" not in names(partition, less) >= {"Scrap", "Judged"}
+
+
 def test_nets_with_time_are_left_alone(tmp_path: Path) -> None:
     text = tending(4).replace("place Loading\n", "place Loading : WAIT\n")
     text = text.replace("  colset JOB", "  colset WAIT = unit timed;\n  colset JOB")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,9 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot_scripts.machine import Machine, analyse
 from pn2code.verdict.opened import read
+from pn2code.verify.controller.control_answers import OTHERS, silent
 from pn2code.verify.controller.replies import Replies
+from pn2code.verify.controller.running import Running
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
 REPORT = """    trans Report
@@ -148,6 +151,24 @@ def test_only_the_supervisor_is_owed_an_answer(toml: str, late: str, tmp_path: P
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None, [x.message for x in d.errors]
     assert Replies.of(partition, opened.config).late == late
+
+
+def test_for_whom_it_may_have_to_wait_is_named(tmp_path: Path) -> None:
+    """The message of another robot, which the supervisor does not see."""
+    netbuilder.write(PEERS, tmp_path / "cell.cpn")
+    (tmp_path / "cell.toml").write_text(TOML.replace('kind = "data"', ""))
+    d = Diagnostics()
+    opened = read(tmp_path / "cell.toml", {}, d)
+    assert opened is not None and opened.config is not None, [x.message for x in d.errors]
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None, [x.message for x in d.errors]
+    running = Running.of(partition)
+    assert [s.awaited for s in running.silences] == [("`back` of robot `second`",)]
+    waits = replace(running, silences=tuple(replace(s, unanswered="") for s in running.silences))
+    rows = [{"answer": "yes"}] * OTHERS + [{"answer": "no"}]
+    assert silent(waits, rows).startswith(
+        "robot `first` may have to wait for others (`back` of robot `second`) while it owes an answer"
+    )
 
 
 def test_a_round_without_a_message_is_named(tmp_path: Path) -> None:

@@ -64,11 +64,13 @@ class Looked:
         running: the net.
         found: its space, with answers to the questions about the cell, and about orders if they are all the same.
         orders: the space of all orders, if these are not; its first answers are those to the questions about them.
+        told: the answers to what was asked of states instead of properties, one or more for some of these.
     """
 
     running: Running
     found: Exploration
     orders: Exploration | None
+    told: tuple[Mapping[str, Any], ...] = ()
 
 
 def loosened(
@@ -152,13 +154,15 @@ def look(
     found = _explored(running.net, plan, limits, d, replace(own, questions=cell))
     if found is None or not all_good(found.answers, cell, properties):
         return None
+    told = tuple(found.answers[:properties])
+    found = replace(found, answers=tuple(found.answers[properties:]))
     if is_choiceless(found):
-        return Looked(running, found, None)
+        return Looked(running, found, None, told)
     own = replace(own, questions=orders, stem="orders")
     other = _explored(running.net, plan, limits, d, own)
     if other is None or not all_good(other.answers, orders):
         return None
-    return Looked(running, found, other)
+    return Looked(running, found, other, told)
 
 
 def _explored(

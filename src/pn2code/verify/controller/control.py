@@ -305,7 +305,9 @@ def examine(
 
         told = told_poses(poses, found, limits.deadline)
         orders: Exploration | None = found
-        said, asked = _parted(found.answers[count:], ORDERS if is_asked_at_once else 0)
+        # In turns the answers about properties are apart (`Looked.told`).
+        others = found.answers if in_turns is not None else found.answers[count:]
+        said, asked = _parted(others, ORDERS if is_asked_at_once else 0)
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
         is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
@@ -531,7 +533,7 @@ def _told_in_turns(
         {**row, "part": True} for row in part.answers[: len(properties)]
     ]
     told = _told_by_states(running.partition, plan, looked.running.over)
-    for (i, x), mine in zip(told, looked.found.answers, strict=False):
+    for (i, x), mine in zip(told, looked.told, strict=True):
         if x.holds(mine):
             rows[i] = Stated.row(properties[i])
     return _hunted(running, plan, limits, options, rows)

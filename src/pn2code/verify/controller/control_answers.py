@@ -136,10 +136,11 @@ def silent(running: Running, rows: Sequence[Mapping[str, Any]]) -> str:
         if row["answer"] == "no" and silence.unanswered:
             return f"{silence.who} may give no answer: {silence.unanswered}"
         if row["answer"] == "no":
+            whom = f" ({', '.join(silence.awaited)})" if silence.awaited else ""
             return (
-                f"{silence.who} may have to wait for others while it owes an answer, and whoever owes one for "
-                'longer than `reply_timeout_s` stops the cell; a message that is never answered is `kind = "data"` in '
-                "cell.toml (docs/protocol.md, I8)"
+                f"{silence.who} may have to wait for others{whom} while it owes an answer, and whoever owes one for "
+                "longer than `reply_timeout_s` stops the cell; a message whose answer may wait for others, or never "
+                'comes, is `kind = "data"` in cell.toml (docs/protocol.md, I8)'
             )
     return ""
 

@@ -13,16 +13,17 @@ what is wrong in one of its runs nothing follows.
 order. Wherever the former is in a state with marking m (of the places of the cell's net), the latter is in m|; and what
 robots and devices can do in that state with which values is enabled in m|.
 
-P are places that only transitions of the supervisor touch, none of them a channel. Each run of the cell as it runs is,
-without the steps of programs, an occurrence sequence of the closed net in which priorities count among the transitions
-of an owner (`running`), hence one of the closed net without priorities. For each occurrence e that leads there from m
-to m', by induction:
+P are places that only transitions of the supervisor touch, none of them a channel, and no expression that goes with
+them (of their arcs, of their initial marking) changes a reference, on which others may depend. Each run of the cell as
+it runs is, without the steps of programs, an occurrence sequence of the closed net in which priorities count among the
+transitions of an owner (`running`), hence one of the closed net without priorities. For each occurrence e that leads
+there from m to m', by induction:
 
 * *e is enabled in m|.* A transition asks the same of m and of m|, or less if it had arcs from P. A variable for which
   nothing is left that binds it takes all values of its colour set, among them the one that it has in e, since no
   variable takes others. (A place is not forgotten if such a colour set is large.) Guards are left out only if a
   variable is in them that takes no value any more.
-* *It leads to m'|*, as it does the same to all other places.
+* *It leads to m'|*, as it does the same to all other places, and to all references.
 * A program may do less than the net: it has not seen a message yet, or does only the first of what is enabled. So what
   a robot can do in a state of the cell is enabled in m, and therefore, as it has no arcs from P, in m|.
 
@@ -43,6 +44,7 @@ from pn2code.net.enumerable import size
 from pn2code.net.flat import ArcKind, BindAll, BindRandom, BindStep, FlatNet, FlatTransition
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables
+from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.structure import bounds
 from pn2code.verify.controller.running import SUPERVISOR
 
@@ -92,6 +94,12 @@ def forgetful(partition: Partition, storage: Mapping[str, str]) -> Forgetful | N
 def _own_places(partition: Partition) -> frozenset[int]:
     """Places that only transitions of the supervisor touch, and that are no channels."""
     others = {c.place for c in partition.channels}
+    effects = effects_of(partition.net.program)
+    others |= {
+        p.index
+        for p in partition.net.places
+        if p.initial and Effect.WRITE in effects.of(p.initial[0])
+    }
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
         if owner != SUPERVISOR:
             others |= {a.place for a in t.arcs}
@@ -122,7 +130,7 @@ def _computes(value: Exp) -> bool:
 
 
 def _without(net: FlatNet, places: Collection[int]) -> FlatNet | None:
-    """The net without the arcs of places; None: a variable would have no value."""
+    """The net without the arcs of places; None: a variable would have no value, or a reference another one."""
     made: list[FlatTransition] = []
     for t in net.transitions:
         own = _less(net, t, places)
@@ -140,6 +148,8 @@ def _less(net: FlatNet, t: FlatTransition, places: Collection[int]) -> FlatTrans
         return t
     variables = NetVariables(net.program.variables)
     gone = [a.inscription.value for a in t.arcs if a.place in places and a.inscription is not None]
+    if Effect.WRITE in effects_of(net.program).of(*gone):
+        return None
     lost = set(variables.of(*gone)) - {
         s for a in arcs if a.kind is not ArcKind.OUTPUT and a.inscription is not None
         for s in variables.of(a.inscription.value)

@@ -77,6 +77,7 @@ class Silence:
             messages, the places that are marked if it is there.
         answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
         unanswered: where its script ends without an answer, see `unanswered`; "": it always answers.
+        awaited: for which messages of others than the supervisor it waits, in words: "`away` of robot `maker`".
     """
 
     who: str
@@ -84,6 +85,7 @@ class Silence:
     states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
     answers: tuple[tuple[int, int], ...]
     unanswered: str = ""
+    awaited: tuple[str, ...] = ()
 
 
 @frozen
@@ -443,7 +445,15 @@ class _Composer:
             if states:
                 answers = tuple((place, self.seen[place]) for place in mine)
                 who = self.partition.owners[owner].phrase
-                yield Silence(who, owes, tuple(states), answers, unanswered(program))
+                awaited = tuple(self._of_others(owner))
+                yield Silence(who, owes, tuple(states), answers, unanswered(program), awaited)
+
+    def _of_others(self, reader: int) -> Iterator[str]:
+        """The messages that a program gets from others than the supervisor, in words."""
+        for c in self.partition.channels:
+            if c.reader == reader and c.writer != SUPERVISOR:
+                who = self.partition.owners[c.writer].phrase
+                yield f"`{self.partition.net.places[c.place].short}` of {who}"
 
     def _shown(self, place: int) -> tuple[int, ...]:
         return (self.out[place],) if place in self.out else ()
@@ -615,15 +625,28 @@ class _Composer:
 
 
 def staged(partition: Partition) -> Iterator[Channel]:
-    """Channels of robots whose messages come out in an order that somebody could notice, in that order."""
+    """Channels of robots whose messages come out in an order that somebody could notice, in that order.
+
+    What is written after a message that comes out later than it is put has to come out later still, wherever the two
+    are put together.
+    """
     channels = {c.place: c for c in partition.channels}
+    order = [c.place for c in partition.channels]
     found: set[int] = set()
+    together: list[list[int]] = []
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
         put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
         if owner == SUPERVISOR or len(put) < 2:
             continue
+        together.append(sorted(put, key=order.index))
         if len({channels[place].reader for place in put}) > 1 or _acts_early(partition, put):
             found |= put
+    size = -1
+    while size < len(found):
+        size = len(found)
+        for row in together:
+            after = next((i for i, place in enumerate(row) if place in found), len(row))
+            found.update(row[after:])
     return (c for c in partition.channels if c.place in found)
 
 
