@@ -222,7 +222,7 @@ def test_each_kind_of_command_is_counted_and_has_a_colour_everywhere(root: Path)
     said = [kind_and_label(c)[0] for c in (MoveExternal(()), MoveHome(), ToolAction("grip", 1.0))]
     assert said == ["external", "home", "tool"] and set(said) <= set(KINDS)
     assert list(charts.COLOURS) == list(KINDS)
-    page_ = (root / "templates/web/timeline.js").read_text(encoding="utf-8")
+    page_ = (root / "templates/web/timedrawing.js").read_text(encoding="utf-8")
     row = re.search(r"KINDS = .*?\(\{(.*?)\}\)", page_, re.DOTALL)
     assert row is not None
     assert dict(re.findall(r'(\w+): "(#\w+)"', row[1])).keys() == charts.COLOURS.keys()
