@@ -22,7 +22,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatch
 from functools import cache, lru_cache
@@ -296,6 +296,9 @@ class _Builder:
                 library = pool.submit(self._library, room, d)
                 try:
                     net = self._net(room, d)
+                    # A signal that comes just before a thread waits without an end is heard only after that.
+                    while wait([library], _LOOK_S).not_done:
+                        pass
                     if not library.result() or not net:
                         return None
                 except BaseException:
