@@ -109,7 +109,8 @@ pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *val
 /* Whether the value is in the colour set: ranges, lengths, members of subsets, finite numbers where they are stored
  * narrowly. */
 bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value);
-/* Raises PN_ERR_COLOUR, and says which value is not in which colour set; a long value is cut. */
+/* Raises PN_ERR_COLOUR, and says which value is not in which colour set; a long value is cut. With -DPN_FLAT_TYPES only
+ * integers are said, other values would take recursion. */
 void pn_raise_colour(pn_ctx_t *cx, const pn_type_t *type, const void *value);
 /* Rounds what is stored in single precision, in place; lists are copied into the arena. PN_ERR_COLOUR if it is not
  * finite then. */

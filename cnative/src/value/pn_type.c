@@ -485,9 +485,16 @@ void pn_raise_colour(pn_ctx_t *cx, const pn_type_t *type, const void *value)
         pn_text_t colour;
         pn_text_t said;
         pn_text_init(&colour, buffer, sizeof buffer);
+#ifdef PN_FLAT_TYPES /* the text of a record takes recursion, which a supervisor without nested values does not have */
+        if (type->kind == PN_KIND_INT) {
+            mkstr_int(type, load_int(value), &colour);
+        }
+#else
         pn_mkstr(type, value, &colour);
+#endif
         pn_text_init(&said, cx->said, sizeof cx->said);
-        pn_text_str(&said, "illegal colour ");
+        pn_text_str(&said, "illegal colour");
+        pn_text_str(&said, (colour.length > 0U) ? " " : "");
         say_shortly(&said, colour.buffer, colour.length, PN_SAID_SIZE / 2U);
         pn_text_str(&said, ": it is not in the colour set `");
         say_shortly(&said, type->name, strlen(type->name), PN_SAID_SIZE / 4U);
