@@ -7,8 +7,8 @@
  *   answer 1 --Finish--> Done
  *   Timer --Late--> Done              when its time has come
  *
- * Order 1000 + e raises the error e while it fires, 2000 + e while it is searched for. ODD_BEGIN=e in the environment
- * raises it before anything of the net is evaluated. -DODD_REAL_TIME: the clock is real. -DODD_OWNERS=N: so many.
+ * Order 1000 + e raises the error e while it fires, 2000 + e while it is searched for, 900 one that says a value.
+ * ODD_BEGIN=e in the environment raises it before anything of the net is evaluated. -DODD_REAL_TIME: the clock is real. -DODD_OWNERS=N: so many.
  * -DODD_TWICE: after the first answer something is said.
  */
 #define _POSIX_C_SOURCE 200809L
@@ -57,7 +57,8 @@ enum {
     DRAWN = 19,      /* the long loop, which something ends that is not in the marking */
     COUNT = 20,      /* up to 999, without ever repeating itself, to the end */
     LOOP_BEGIN = 50, /* 50 .. 52, 50 .. 62: the loops */
-    COUNTED = 100
+    COUNTED = 100,
+    ILLEGAL = 900
 };
 
 /* A place for one token. */
@@ -292,6 +293,10 @@ static bool odd_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
     const int64_t n = ((const binding_t *)binding)->n;
     (void)self;
     pn_begin(cx, "page `Odd`, transition `odd` (ID7)", m->now);
+    if (n == ILLEGAL) {
+        pn_raise_colour(cx, &INT, &n);
+        return false;
+    }
     if (n >= 1000) {
         pn_raise(cx, (pn_error_t)(n - 1000), (n == (1000 + PN_ERR_RAISED)) ? "Own" : NULL);
         return false;

@@ -37,6 +37,14 @@ def errors_while_it_fires(lab: Lab) -> None:
 
 
 @situation
+def an_error_that_says_a_value(lab: Lab) -> None:
+    for program in ("odd", "odd.deployed"):
+        done = lab.run(program, order=900)
+        said = "illegal colour 900: it is not in the colour set `INT`, while firing `Odd.Odd`"
+        nothing_said(done.stopped(1, said))
+
+
+@situation
 def errors_while_it_searches(lab: Lab) -> None:
     for error in (1, 3, 13, 14):
         done = lab.run("odd.deployed", order=2000 + error).stopped(
