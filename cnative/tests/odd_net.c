@@ -8,8 +8,8 @@
  *   Timer --Late--> Done              when its time has come
  *
  * Order 1000 + e raises the error e while it fires, 2000 + e while it is searched for, 900 one that says a value.
- * ODD_BEGIN=e in the environment raises it before anything of the net is evaluated. -DODD_REAL_TIME: the clock is real. -DODD_OWNERS=N: so many.
- * -DODD_TWICE: after the first answer something is said.
+ * ODD_BEGIN=e in the environment raises it before anything of the net is evaluated. -DODD_REAL_TIME: the clock is
+ * real. -DODD_OWNERS=N: so many. -DODD_TWICE: after the first answer something is said.
  */
 #define _POSIX_C_SOURCE 200809L
 
