@@ -461,6 +461,7 @@ bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value)
     return (type->kind != PN_KIND_RECORD) || (type->member == NULL) || type->member(cx, value);
 }
 
+#ifndef PN_FLAT_TYPES
 /* Appends at most so many bytes of a text on one line; three dots stand for the rest. */
 static void say_shortly(pn_text_t *out, const char *bytes, size_t length, size_t most)
 {
@@ -477,27 +478,31 @@ static void say_shortly(pn_text_t *out, const char *bytes, size_t length, size_t
     }
     pn_text_str(out, (length > most) ? dots : "");
 }
+#endif
 
 void pn_raise_colour(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
     if (pn_ok(cx)) {
-        char buffer[PN_SAID_SIZE];
-        pn_text_t colour;
         pn_text_t said;
-        pn_text_init(&colour, buffer, sizeof buffer);
-#ifdef PN_FLAT_TYPES /* the text of a record takes recursion, which a supervisor without nested values does not have */
-        if (type->kind == PN_KIND_INT) {
-            mkstr_int(type, load_int(value), &colour);
-        }
-#else
-        pn_mkstr(type, value, &colour);
-#endif
         pn_text_init(&said, cx->said, sizeof cx->said);
         pn_text_str(&said, "illegal colour");
-        pn_text_str(&said, (colour.length > 0U) ? " " : "");
+#ifdef PN_FLAT_TYPES /* the text of a record takes recursion, which a supervisor without nested values does not have */
+        if (type->kind == PN_KIND_INT) {
+            pn_text_char(&said, ' ');
+            mkstr_int(type, load_int(value), &said);
+        }
+        pn_text_str(&said, ": it is not in the colour set `");
+        pn_text_str(&said, type->name);
+#else
+        char buffer[PN_SAID_SIZE];
+        pn_text_t colour;
+        pn_text_init(&colour, buffer, sizeof buffer);
+        pn_mkstr(type, value, &colour);
+        pn_text_char(&said, ' ');
         say_shortly(&said, colour.buffer, colour.length, PN_SAID_SIZE / 2U);
         pn_text_str(&said, ": it is not in the colour set `");
         say_shortly(&said, type->name, strlen(type->name), PN_SAID_SIZE / 4U);
+#endif
         pn_text_str(&said, "`");
         pn_raise(cx, PN_ERR_COLOUR, cx->said);
     }
