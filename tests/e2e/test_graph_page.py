@@ -136,7 +136,10 @@ def test_a_large_picture_is_on_a_canvas(
         browser.page.keyboard.press("Enter")
         browser.page.wait_for_selector(".sheet[data-node='34']")
         x, y = centre_of_canvas(browser.page)
+        browser.page.mouse.move(x, y)  # elsewhere the wheel would scroll the page away from under the click
+        seen = width(browser.page)
         browser.page.mouse.wheel(0, -200)
+        browser.wait(f"{WIDTH} < {0.8 * seen}")
         browser.page.mouse.click(x, y)
         browser.wait("location.hash === '#row-34'")
         pixels = """() => {
@@ -162,6 +165,14 @@ net Counter
       in A : n
       out A : n + 1
 """
+
+
+WIDTH = 'document.querySelector(".sheet svg").viewBox.baseVal.width'
+
+
+def width(page: Any) -> float:
+    """Of what is seen, in units of the drawing."""
+    return float(page.evaluate(WIDTH))
 
 
 def centre_of_canvas(page: Any) -> tuple[float, float]:

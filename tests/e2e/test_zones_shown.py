@@ -25,6 +25,7 @@ from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.record import BrokenZone
 
 FRONT = """
 [zones.front]
@@ -128,7 +129,7 @@ def test_a_zone_is_lit_on_the_live_page_as_soon_as_it_is_broken(tmp_path: Path) 
         shown.page.wait_for_selector("body[data-ready=true]")
         shown.page.get_by_text("The run has ended").wait_for()
         shown.wait("live.page.clock.t >= live.page.run.end - 1e-9")
-        assert shown.ask(COLOURS.replace("replay", "live")) == ["d55e00", "0072b2"]
+        shown.wait(f"String(({COLOURS.replace('replay', 'live')})()) === 'd55e00,0072b2'")
         assert run.wait()[0] == 1
         summary = json.loads((tmp_path / "run/summary.json").read_text(encoding="utf-8"))
         [zone, _] = shown.ask("() => live.page.run.cell.zones")
@@ -136,3 +137,9 @@ def test_a_zone_is_lit_on_the_live_page_as_soon_as_it_is_broken(tmp_path: Path) 
         shown.ask("() => live.seek(0)")
         assert shown.ask(COLOURS.replace("replay", "live")) == ["e69f00", "0072b2"]
         assert not shown.errors
+
+
+def test_the_moment_at_which_a_zone_is_broken_is_exact() -> None:
+    """A page whose clock ends at this very moment lights the zone: rounded up it would lie beyond the end."""
+    t = 1.9980707310001
+    assert BrokenZone("front", t, "link_3", 0.5, (0.0, 0.0, 0.0)).described()["t"] == t

@@ -84,9 +84,9 @@ class BrokenZone:
     point: tuple[float, float, float]
 
     def described(self) -> dict[str, Any]:
-        """For `summary.json` and the replay page."""
+        """For `summary.json` and the replay page, whose clock may end at this very moment: it is not rounded."""
         return {
-            "t": round(self.t, 6),
+            "t": self.t,
             "link": self.link,
             "speed": round(self.speed, 6),
             "point": [round(v, 6) for v in self.point],
