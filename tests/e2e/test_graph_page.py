@@ -136,7 +136,9 @@ def test_a_large_picture_is_on_a_canvas(
         browser.page.keyboard.press("Enter")
         browser.page.wait_for_selector(".sheet[data-node='34']")
         x, y = centre_of_canvas(browser.page)
-        browser.page.mouse.move(x, y)  # elsewhere the wheel would scroll the page away from under the click
+        browser.page.mouse.move(
+            x, y
+        )  # elsewhere the wheel would scroll the page away from under the click
         seen = width(browser.page)
         browser.page.mouse.wheel(0, -200)
         browser.wait(f"{WIDTH} < {0.8 * seen}")
