@@ -187,7 +187,7 @@ def _limits(limit: _Piece | None, needed: _Piece | None = None) -> list[_Piece]:
         if needed is not None:
             raise needed.wrong("the bounds are missing: `with 1..3`")
         return []
-    found = []
+    found: list[_Piece] = []
     for one in re.split(r"\sand\s", limit.text):
         start = limit.text.index(one, found[-1].end - limit.start if found else 0)
         piece = limit.part(start, start + len(one))

@@ -86,7 +86,9 @@ def text_of(line: Line, start: int, origin: Origin) -> SourceText:
     """
     rest = line.text[start:]
     start += len(rest) - len(rest.lstrip())
-    pieces, marks, length = [], [], 0
+    pieces: list[str] = []
+    marks: list[tuple[int, int, int]] = []
+    length = 0
 
     def add(piece: str, at: Line, column: int, blanks: int) -> None:
         nonlocal length

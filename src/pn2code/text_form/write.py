@@ -231,13 +231,13 @@ def colset(item: RawColset) -> str:
     """`colset NAME = DEFINITION`."""
     texts = [" ".join(t.text.split()) for t in item.texts]
     ids = ", ".join(item.ids)
+    body: str = item.kind
     match item.kind:
         case "unit" | "bool":
-            body = item.kind
             if item.ids:
                 body += f" with {ids}" if item.kind == "unit" else f" with ({ids})"
         case kind if kind in SIMPLE:
-            body = item.kind + _with(texts)
+            body += _with(texts)
         case "enum":
             body = f"with {' | '.join(item.ids)}"
         case "index" | "list":
