@@ -221,10 +221,19 @@ def with_properties(desk: Desk) -> None:
         (desk.project / name).write_text(PROPERTY.format(name=name))
 
 
+def with_text(desk: Desk) -> None:
+    """The document has a net as text in it."""
+    printed = (ROOT / "docs/text.md").read_text(encoding="utf-8")
+    net = re.search(r"^```cpnt\n(.*?)^```", printed, re.MULTILINE | re.DOTALL)
+    assert net is not None
+    (desk.project / "belt.cpnt").write_text(net.group(1), encoding="utf-8")
+
+
 PLACES: dict[str, Callable[[Desk], None]] = {
     "docs/contest.md": with_input,
     "docs/execution.md": in_folder("generated/riveting"),
     "docs/properties.md": with_properties,
+    "docs/text.md": with_text,
     "examples/philosophers/README.md": in_folder("examples/philosophers"),
 }
 """Where a document's reader is, if not in the project's folder, and what else there is."""

@@ -16,8 +16,9 @@ ALLOWED: dict[str, set[str]] = {
     "reading": {"diagnostics"},
     "robot": {"cell_file", "diagnostics"},
     "pnml": {"diagnostics", "ml", "reading"},
+    "text_form": {"diagnostics", "reading"},
     "tdl": {"diagnostics", "robot"},
-    "net": {"diagnostics", "ml", "pnml", "reading"},
+    "net": {"diagnostics", "ml", "pnml", "reading", "text_form"},
     "cell": {"cell_file", "diagnostics", "ml", "net", "robot"},
     "arms": {"cell", "diagnostics", "robot"},
     "semantics": {"diagnostics", "ml", "net"},
@@ -32,7 +33,7 @@ ALLOWED: dict[str, set[str]] = {
     "structure": {"diagnostics", "ml", "net", "semantics"},
     "trace": {"cell", "diagnostics", "ml", "net", "semantics"},
     "unfold": {"diagnostics", "ml", "net", "semantics"},
-    "convert": {"diagnostics", "ml", "net", "pnml", "reading", "semantics", "unfold"},
+    "convert": {"diagnostics", "drawing", "ml", "net", "pnml", "reading", "semantics", "text_form", "unfold"},
     "emission": {"cell", "diagnostics", "ir", "lowering", "net", "robot_scripts", "tdl"},
     "toolchain": {"diagnostics", "emission"},
     "contest": {"diagnostics", "ml", "net", "properties", "semantics", "symbolic", "toolchain", "unfold"},
@@ -71,7 +72,7 @@ ALLOWED: dict[str, set[str]] = {
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
         "drawing", "emission", "geometry", "input_files", "ir", "live", "lowering", "ml", "net", "new_cell", "pipeline",
         "play", "reading", "replay", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure",
-        "tdl", "timing", "trace", "unfold", "verdict", "verify", "web"},
+        "tdl", "text_form", "timing", "trace", "unfold", "verdict", "verify", "web"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}

@@ -232,7 +232,7 @@ def load(
     """A net that is free of errors. What the cell beside it says of the net is looked at by `check` and `Net.verify`.
 
     Args:
-        path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
+        path: a .cpn, .cpnt or .pnml file, a cell.toml, or a folder with a cell.toml.
         values: replace `val`s of the net; a value is written as CPN ML (`"5"`, `"[1, 2]"`), numbers and truth values as
             Python has them.
         int_bits: the width of `int`: 31 as in CPN Tools, or 64.

@@ -46,7 +46,9 @@ def locate(
 
 def _only_net(folder: Path, d: Diagnostics) -> tuple[Path, None] | None:
     """The net of a folder that has no `cell.toml`: its only one."""
-    nets = sorted(p for p in folder.iterdir() if p.suffix in (".cpn", ".pnml") and p.is_file())
+    nets = sorted(
+        p for p in folder.iterdir() if p.suffix in (".cpn", ".cpnt", ".pnml") and p.is_file()
+    )
     if len(nets) == 1:
         return nets[0], None
     names = ", ".join(f"`{p.name}`" for p in nets[:5]) + (", ..." if len(nets) > 5 else "")

@@ -12,7 +12,7 @@ NET = Section(
         Key(
             "file",
             "text",
-            "The net, a `.cpn` or `.pnml` file, relative to the folder of cell.toml.",
+            "The net, a `.cpn`, `.cpnt` or `.pnml` file, relative to the folder of cell.toml.",
             "a file name",
             required=True,
         ),

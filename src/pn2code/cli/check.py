@@ -44,7 +44,9 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 
 
 def check(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     geometry: Annotated[
         bool,
         typer.Option(

@@ -54,7 +54,9 @@ MOST_NAMES = 8
 
 
 def conform(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     most: Annotated[
         int,
         typer.Option(

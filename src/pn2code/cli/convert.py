@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -37,6 +37,8 @@ EPILOG = """Examples:
 
   pn2code convert net.pnml -o net.cpn
 
+  pn2code convert net.cpn -o net.cpnt    (as text, and back)
+
   pn2code convert net.cpn -o net.pnml --unfold
 
   pn2code convert net.cpn -o net.pml     (a model for SPIN)
@@ -44,17 +46,19 @@ EPILOG = """Examples:
 
 _PACE_S = 0.5
 """Between two tellings of progress."""
-_FORMATS = (".pnml", ".pml", ".promela", ".cpn")
+_FORMATS = (".pnml", ".pml", ".promela", ".cpn", ".cpnt")
 
 
 def convert(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     output: Annotated[
         Path,
         typer.Option(
             *OUTPUT_FLAGS,
             metavar="FILE",
-            help="The file to write: FILE.pnml, FILE.pml (SPIN) or FILE.cpn.",
+            help="The file to write: FILE.pnml, FILE.pml (SPIN), FILE.cpn, or FILE.cpnt (text).",
         ),
     ],
     unfold: Annotated[
@@ -71,7 +75,7 @@ def convert(
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools."""
+    """Convert a net to PNML, to a Promela model for SPIN, to text, or to a net of CPN Tools."""
     from pn2code.convert.codes import CONVERT_FORMAT
 
     deadline = Deadline.of_command(max_seconds)
@@ -82,7 +86,7 @@ def convert(
             CONVERT_FORMAT,
             f"`{output}` names none of the formats that nets are converted to",
             Origin(str(output)),
-            hint="let the name end in .pnml, .pml or .cpn",
+            hint="let the name end in .pnml, .pml, .cpn or .cpnt",
         )
         stop(d, form)
     check_writable(output, "-o")
@@ -118,12 +122,25 @@ def _convert(
     opened = open_net(net, values, form, inputs=inputs)
     document = opened.examined.document
     assert document is not None
-    if kind == ".cpn" and (document.tool != "PNML" or unfold):
+    if unfold and kind in (".cpn", ".cpnt"):
         d.error(
             UNSUPPORTED_IN_CPN,
-            "only PNML nets are written as .cpn files, and not unfolded",
+            f"nets are not unfolded when they are written as {kind} files",
             Origin(str(net)),
-            hint="write the unfolded net as PNML first, then that as .cpn",
+            hint=f"write the unfolded net as PNML first, then that as {kind}",
+        )
+        stop(d, form)
+    if values and kind in (".cpn", ".cpnt"):
+        raise typer.BadParameter(
+            f"a {kind} file has the declarations of the net as they are: set the values when you use it",
+            param_hint="--set",
+        )
+    if kind == ".cpn" and document.tool not in ("PNML", "text"):
+        d.error(
+            UNSUPPORTED_IN_CPN,
+            "the net is a .cpn file already",
+            Origin(str(net)),
+            hint="copy it, or convert it to .pnml, .pml or .cpnt",
         )
         stop(d, form)
     with playing(form):
@@ -153,8 +170,16 @@ def _text(
     from pn2code.convert import cpn, pnml_plain, pnml_symmetric, promela
     from pn2code.drawing.positions import positions
     from pn2code.ml.core.colsets import Kind
+    from pn2code.reading.cpn import read_data
+    from pn2code.text_form import write as text_form
     from pn2code.unfold.unfold import unfold
 
+    if kind == ".cpnt":
+        if document.tool == "PNML":  # what PNML leaves out, a file of CPN Tools says
+            made = cpn.emit(document, positions(document)).encode()
+            document = cast("Document", read_data(made, document.file, d))
+        written = text_form.emit(document, d)
+        return None if d.has_errors else written
     if kind == ".cpn":
         return cpn.emit(document, positions(document))
     plain = all(p.colset.resolved.kind is Kind.UNIT for p in flat.places)

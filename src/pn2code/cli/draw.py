@@ -61,7 +61,9 @@ _HTML = (".html", ".htm")
 
 
 def draw(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     output: Annotated[
         str,
         typer.Option(
@@ -372,7 +374,7 @@ class _Drawing:
         from pn2code.drawing.positions import needs_arranging
 
         for page in self.pages:
-            if needs_arranging(page):
+            if needs_arranging(page) and self.document.tool != "text":  # a text has none
                 d.note(
                     DRAW_ARRANGED,
                     f"page `{page.name}` has no usable positions and is arranged automatically",

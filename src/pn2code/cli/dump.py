@@ -36,7 +36,9 @@ class Stage(StrEnum):
 
 
 def dump(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     stage: Annotated[
         Stage, typer.Option(help="The stage after which the net is printed.")
     ] = Stage.FLAT,

@@ -34,7 +34,9 @@ EPILOG = """Examples:
 
 
 def enabled(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     as_json: JsonOption = False,
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

@@ -37,7 +37,9 @@ EPILOG = """Examples:
 
 
 def generate(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     output: Annotated[
         Path | None,
         typer.Option(*OUTPUT_FLAGS, help="The output folder (default: generated/<net>)."),

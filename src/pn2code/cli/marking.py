@@ -36,7 +36,9 @@ EmptyOption = Annotated[bool, typer.Option("--empty", help="Print empty places a
 
 
 def marking(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     as_json: JsonOption = False,
     empty: EmptyOption = False,
     inputs: InputOption = None,

@@ -44,7 +44,9 @@ EPILOG = """Examples:
 
 
 def play(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     port: Annotated[
         int, port_option("The port of the page on this machine. 0 is any that is free.")
     ] = 0,

@@ -48,7 +48,9 @@ def replay(
     trace: Annotated[
         Path, typer.Argument(help="A trace (*.trace.jsonl), or a recording by CPN Tools.")
     ],
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     as_json: JsonOption = False,
     engine: EngineOption = Engine.REFERENCE,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

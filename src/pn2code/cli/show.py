@@ -51,7 +51,9 @@ def show(
     ],
     net: Annotated[
         Path | None,
-        typer.Argument(help="Of a trace: its net (.cpn or .pnml), a cell.toml, or a folder."),
+        typer.Argument(
+            help="Of a trace: its net (.cpn, .cpnt or .pnml), a cell.toml, or a folder."
+        ),
     ] = None,
     output: Annotated[
         Path, typer.Option(*OUTPUT_FLAGS, metavar="FILE", help="The HTML file to write.")

@@ -65,7 +65,9 @@ DEFAULT_STEPS = 1000
 
 
 def simulate(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     steps: Annotated[
         int | None,
         typer.Option(

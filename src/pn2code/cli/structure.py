@@ -31,7 +31,9 @@ EPILOG = """Examples:
 
 
 def structure(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     as_json: JsonOption = False,
     everything: Annotated[bool, typer.Option("--all", help="Print long lists completely.")] = False,
     inputs: InputOption = None,

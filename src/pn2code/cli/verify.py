@@ -92,7 +92,9 @@ _CODES = {"no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}
 
 
 def verify(
-    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    net: Annotated[
+        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+    ],
     max_states: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Stop after N markings are found.")
     ] = None,

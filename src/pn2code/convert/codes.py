@@ -18,10 +18,11 @@ UNSUPPORTED_IN_PROMELA = register(
 UNSUPPORTED_IN_CPN = register(
     "unsupported-in-cpn",
     "the net cannot be written as a file of CPN Tools",
-    "A .cpn file is written from a PNML net. Nets that are already .cpn files are not rewritten.",
+    "A .cpn file is written from a PNML net or a net as text. Nets that are already .cpn files are not rewritten.",
 )
 CONVERT_FORMAT = register(
     "convert-format",
     "the format to convert to is not known",
-    "`pn2code convert` chooses the format by the ending of the output file: `.pnml`, `.pml` (SPIN) or `.cpn`.",
+    "`pn2code convert` chooses the format by the ending of the output file: `.pnml`, `.pml` (SPIN), `.cpn` or `.cpnt` "
+    "(text).",
 )

@@ -1,4 +1,4 @@
-"""A `Document` of flat pages (from a PNML net) as a file of CPN Tools.
+"""A `Document` that was not drawn with CPN Tools (from PNML, or a net as text) as a file of CPN Tools.
 
 CPN Tools enumerates variables that no arc binds only where their colour set has at most 100 values; a PNML net may have
 larger ones.
@@ -6,22 +6,21 @@ larger ones.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
 from xml.sax.saxutils import escape
 
-from pn2code.convert.pnml import element
+from pn2code.convert.cpn_declarations import declarations
+from pn2code.convert.pnml import Xml, element
+from pn2code.drawing.text import extent
 from pn2code.reading.document import (
     Document,
     Inscription,
     RawArc,
-    RawBlock,
-    RawColset,
-    RawDeclaration,
-    RawMl,
+    RawFusion,
     RawPage,
     RawPlace,
+    RawSubstitution,
     RawTransition,
-    RawVar,
 )
 
 Points = dict[str, tuple[float, float]]
@@ -33,6 +32,9 @@ _ORIENTATIONS = {
     "reset": "Reset",
 }
 _WIDTH, _HEIGHT = 60, 40
+_MARGIN = 16
+"""Of a node, beside its name."""
+_ID = re.compile(r"ID[0-9]{1,15}")
 _LOOK = (
     element("fillattr", colour="White", pattern="", filled="false")
     + element("lineattr", colour="Black", thick=1, type="Solid")
@@ -44,7 +46,7 @@ def emit(document: Document, points: Points) -> str:
     """The file.
 
     Args:
-        document: pages without hierarchy.
+        document: what it has, but monitors; the net of which it is read again is the same.
         points: where the nodes stand, by id, y upwards.
     """
     return _Writer(points).document(document)
@@ -61,52 +63,56 @@ class _Writer:
         return f"ID{1_000_000 + self.count}"
 
     def id(self, identity: str) -> str:
-        """CPN Tools' ids are `ID` and a number."""
+        """CPN Tools' ids are `ID` and a number; those that are so stay, so that traces name the same elements."""
+        if _ID.fullmatch(identity):
+            return identity
         if identity not in self.ids:
             self.ids[identity] = self.new()
         return self.ids[identity]
 
     def document(self, document: Document) -> str:
+        # In PNML what is not written means one token, numbers are tokens, and a guard has no brackets.
+        self.is_pnml = document.tool == "PNML"
+        self.pages = {p.id: p for p in document.pages}
+        self.fused = {m: f.name for f in document.fusions for m in f.members}
+        below = {
+            t.substitution.subpage
+            for p in document.pages
+            for t in p.transitions
+            if t.substitution is not None
+        }
         pages = "\n".join(self.page(p) for p in document.pages)
-        instances = "".join(
-            element("instance", id=self.new(), page=self.id(f"page {p.id}")) for p in document.pages
+        fusions = "".join(map(self.fusion, document.fusions))
+        instances = "".join(self.instance(p) for p in document.pages if p.id not in below)
+        globbox = "\n".join(declarations(document.globbox, self.new))
+        options = "".join(
+            element("option", element("value", element("boolean", escape(value))), name=name)
+            for name, value in document.options.items()
         )
-        globbox = "\n".join(self.declarations(document.globbox))
         return (
             '<?xml version="1.0" encoding="utf-8"?>\n'
             '<!DOCTYPE workspaceElements PUBLIC "-//CPN//DTD CPNXML 1.0//EN" '
             '"http://cpntools.org/DTD/6/cpn.dtd">\n'
             '<workspaceElements>\n<generator tool="CPN Tools" version="4.0.1" format="6"/>\n<cpnet>\n'
-            f"<globbox>\n{globbox}\n</globbox>\n{pages}\n<instances>{instances}</instances>\n"
-            '<options/>\n<binders/>\n<monitorblock name="Monitors"/>\n<IndexNode expanded="true"/>\n'
-            "</cpnet>\n</workspaceElements>\n"
+            f"<globbox>\n{globbox}\n</globbox>\n{pages}\n{fusions}<instances>{instances}</instances>\n"
+            f'{element("options", options)}\n<binders/>\n<monitorblock name="Monitors"/>\n'
+            '<IndexNode expanded="true"/>\n</cpnet>\n</workspaceElements>\n'
         )
 
-    # --- declarations ----------------------------------------------------------------------------
+    def fusion(self, f: RawFusion) -> Xml:
+        members = [element("fusion_elm", idref=self.id(m)) for m in f.members]
+        return element("fusion", *members, id=self.id(f.id), name=f.name) + "\n"
 
-    def declarations(self, block: RawBlock) -> Iterator[str]:
-        for item in block.items:
-            if isinstance(item, RawBlock):
-                yield from self.declarations(item)
-            else:
-                yield self.declaration(item)
-
-    def declaration(self, item: RawDeclaration) -> str:
-        match item:
-            case RawColset():
-                ids = "".join(map(_id, item.ids))
-                texts = "".join(element("ml", escape(t.text)) for t in item.texts)
-                inside = element("with", texts) if texts else ids
-                declare = element("declare", *map(_id, item.declare)) if item.declare else ""
-                return element(
-                    "color", _id(item.name), element(item.kind, inside), declare, id=self.new()
-                )
-            case RawVar():
-                kind = element("type", _id(item.type))
-                return element("var", kind, *map(_id, item.names), id=self.new())
-            case RawMl():
-                return element("ml", escape(item.text.text), id=self.new())
-        raise TypeError(f"a PNML net has no {type(item).__name__}")
+    def instance(self, page: RawPage, by: RawTransition | None = None) -> Xml:
+        """An instance of a page, with those below it: a prime page, or below another one `by` a transition."""
+        inside = [
+            self.instance(self.pages[t.substitution.subpage], t)
+            for t in page.transitions
+            if t.substitution is not None and t.substitution.subpage in self.pages
+        ]
+        if by is None:
+            return element("instance", *inside, id=self.new(), page=self.id(f"page {page.id}"))
+        return element("instance", *inside, id=self.new(), trans=self.id(by.id))
 
     # --- pages -----------------------------------------------------------------------------------
 
@@ -125,9 +131,15 @@ class _Writer:
             "place",
             self.at(x, y),
             element("text", escape(p.name)),
-            element("ellipse", w=_WIDTH, h=_HEIGHT),
-            self.label("type", p.type.text.text if p.type else "UNIT", x + 45, y - 26),
-            self.label("initmark", _tokens(p.initial, ""), x + 45, y + 26),
+            element("ellipse", w=_width(p.name), h=_HEIGHT),
+            self.label(
+                "type", _written(p.type) or ("UNIT" if self.is_pnml else ""), x + 45, y - 26
+            ),
+            self.label("initmark", self.tokens(p.initial, ""), x + 45, y + 26),
+            self.tag("port", x - 24, y - 16, type=p.port) if p.port else "",
+            self.tag("fusioninfo", x - 24, y - 16, name=self.fused[p.id])
+            if p.id in self.fused
+            else "",
             id=self.id(p.id),
         )
 
@@ -137,12 +149,13 @@ class _Writer:
             "trans",
             self.at(x, y),
             element("text", escape(t.name)),
-            element("box", w=_WIDTH, h=_HEIGHT),
+            element("box", w=_width(t.name), h=_HEIGHT),
+            self.substitution(t.substitution, x, y) if t.substitution else "",
             element("binding", x=0, y=0),
-            self.label("cond", f"[{t.guard.text.text}]" if t.guard else "", x - 45, y + 30),
-            self.label("time", "", x + 45, y + 30),
-            self.label("code", "", x + 45, y - 30),
-            self.label("priority", "", x - 45, y - 30),
+            self.label("cond", self.guard(t.guard), x - 45, y + 30),
+            self.label("time", _written(t.delay), x + 45, y + 30),
+            self.label("code", _written(t.code), x + 45, y - 30),
+            self.label("priority", _written(t.priority), x - 45, y - 30),
             id=self.id(t.id),
             explicit="false",
         )
@@ -150,7 +163,7 @@ class _Writer:
     def arc(self, a: RawArc) -> str:
         x1, y1 = self.points.get(a.transition, (0.0, 0.0))
         x2, y2 = self.points.get(a.place, (0.0, 0.0))
-        words = _tokens(a.inscription, "" if a.orientation in ("inhibitor", "reset") else "1")
+        words = self.tokens(a.inscription, "" if a.orientation in ("inhibitor", "reset") else "1")
         return element(
             "arc",
             self.at(0, 0),
@@ -163,6 +176,27 @@ class _Writer:
             order=1,
         )
 
+    def guard(self, i: Inscription | None) -> str:
+        return f"[{i.text.text}]" if i is not None and self.is_pnml else _written(i)
+
+    def tokens(self, i: Inscription | None, otherwise: str) -> str:
+        """The text of a multi-set; numbers of P/T nets are multi-sets of the unit token."""
+        if not self.is_pnml:
+            return _written(i)
+        words = i.text.text if i else otherwise
+        return f"{words}`()" if words.isdigit() else words
+
+    def substitution(self, s: RawSubstitution, x: float, y: float) -> Xml:
+        page = self.pages.get(s.subpage)
+        pairs = "".join(f"({self.id(port)},{self.id(socket)})" for port, socket in s.portsock)
+        title = page.name if page is not None else s.subpage
+        tag = self.tag("subpageinfo", x, y - _HEIGHT / 2, name=title)
+        return element("subst", tag, subpage=self.id(f"page {s.subpage}"), portsock=pairs)
+
+    def tag(self, tag: str, x: float, y: float, **attributes: str) -> Xml:
+        """A label whose text is an attribute."""
+        return element(tag, self.at(x, y), id=self.new(), **attributes)
+
     def at(self, x: float, y: float) -> str:
         return element("posattr", x=f"{x:.1f}", y=f"{y:.1f}") + _LOOK
 
@@ -171,11 +205,10 @@ class _Writer:
         return element(tag, self.at(x, y), inside, id=self.new())
 
 
-def _tokens(i: Inscription | None, otherwise: str) -> str:
-    """The text of a multi-set; numbers of P/T nets are multi-sets of the unit token."""
-    words = i.text.text if i else otherwise
-    return f"{words}`()" if words.isdigit() else words
+def _written(i: Inscription | None) -> str:
+    return i.text.text if i is not None else ""
 
 
-def _id(name: str) -> str:
-    return element("id", escape(name))
+def _width(name: str) -> int:
+    """Of a node, for its name."""
+    return max(_WIDTH, round(extent((name,))[0]) + _MARGIN)

@@ -219,7 +219,7 @@ class _Writer:
             listed = ", ".join(self.element(t) for _, t in uses)
             rows.append(f'<p class="path">stands behind {listed}</p>')
         scene = build(self.document, page)
-        if scene.arranged:
+        if scene.arranged and self.document.tool != "text":  # a text has no positions
             rows.append(
                 '<p class="note">The file has no usable positions: arranged automatically.</p>'
             )

@@ -1,4 +1,4 @@
-"""A file becomes a `Document`: a `.cpn` file of CPN Tools or a `.pnml` file."""
+"""A file becomes a `Document`: a `.cpn` file of CPN Tools, a `.pnml` file, or a net as text (`.cpnt`)."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ def read(
     data = read_bytes(path, d)
     if data is None:
         return None
+    if path.suffix.lower() == ".cpnt":
+        from pn2code.text_form import read as text_form  # most nets are drawn
+
+        return text_form.read_data(data, str(path), d, partial=partial)
     if path.suffix.lower() != ".cpn":
         from pn2code.pnml import read as pnml  # most nets are no PNML
 

@@ -52,7 +52,7 @@ def load(
     """Reads a net; None when there is nothing to draw, which was reported.
 
     Args:
-        path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
+        path: a .cpn, .cpnt or .pnml file, a cell.toml, or a folder with a cell.toml.
         values: replace `val`s of the net, over those of cell.toml.
         d: gets the errors and warnings.
         inputs: other input files than those beside cell.toml.

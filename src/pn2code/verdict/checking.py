@@ -54,7 +54,7 @@ def check(
     """Looks at a net or cell without running it.
 
     Args:
-        path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
+        path: a .cpn, .cpnt or .pnml file, a cell.toml, or a folder with a cell.toml.
         values: replace `val`s of the net, over those of cell.toml.
         d: gets the errors and warnings.
         int_bits: width of `int`.

@@ -1,0 +1,73 @@
+"""CPN ML as characters: which of them stand outside strings, comments and parentheses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+_SKIPPED = re.compile(r'#?"(?:[^"\\\n]|\\\s+\\|\\.)*"?', re.DOTALL)
+"""A string or a character; one that is never closed ends with its line."""
+_COMMENT = re.compile(r"\(\*|\*\)")
+
+
+def plain(text: str) -> Iterator[tuple[int, str, int]]:
+    """The characters outside strings and comments: offset, character, depth of the parentheses around it."""
+    at, depth, comments = 0, 0, 0
+    while at < len(text):
+        mark = _COMMENT.match(text, at)
+        if mark is not None and (mark.group() == "(*" or comments):
+            comments += 1 if mark.group() == "(*" else -1
+            at = mark.end()
+            continue
+        if comments:
+            at += 1
+            continue
+        string = _SKIPPED.match(text, at)
+        if string is not None:
+            at = string.end()
+            continue
+        c = text[at]
+        depth -= c in ")]}"
+        yield at, c, depth
+        depth += c in "([{"
+        at += 1
+
+
+def open_comments(text: str, before: int = 0) -> int:
+    """How many comments are open after a line, of which `before` were open when it began."""
+    at, comments = 0, before
+    while at < len(text):
+        mark = _COMMENT.match(text, at)
+        if mark is not None and (mark.group() == "(*" or comments):
+            comments += 1 if mark.group() == "(*" else -1
+            at = mark.end()
+            continue
+        string = None if comments else _SKIPPED.match(text, at)
+        at = string.end() if string is not None else at + 1
+    return comments
+
+
+def parts(text: str, separator: str) -> list[tuple[int, int]]:
+    """Beginnings and ends of the parts between separators, which count outside parentheses only."""
+    found, start = [], 0
+    skipped = 0
+    for at, _, depth in plain(text):
+        if depth == 0 and at >= skipped and text.startswith(separator, at):
+            found.append((start, at))
+            start = skipped = at + len(separator)
+    return [*found, (start, len(text))]
+
+
+def first(text: str, separator: str) -> int:
+    """Where the first separator stands outside parentheses, strings and comments; -1 if there is none."""
+    end = parts(text, separator)[0][1]
+    return end if end < len(text) else -1
+
+
+def stripped(text: str, start: int, end: int) -> tuple[int, int]:
+    """The part without white space around it."""
+    while start < end and text[start].isspace():
+        start += 1
+    while start < end and text[end - 1].isspace():
+        end -= 1
+    return start, end
