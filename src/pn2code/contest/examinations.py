@@ -83,6 +83,9 @@ def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
         raise KeyError(examination)
     found = []
     for question in read(folder / f"{examination}.xml"):
+        if question.formula is None:
+            found.append(Asked(question.name, why_not=question.why_not))
+            continue
         try:
             found.append(_of_formula(tables, examination, question.name, question.formula))
         except FormulaError as error:
