@@ -284,6 +284,8 @@ class _Portfolio:
             return Question(
                 number, place.part.kind, TRUE, formula=of_time.formula, is_side=of_time.is_side
             )
+        if place.part.formula is not None:
+            return Question(number, place.part.kind, TRUE, formula=place.part.formula)
         return question(number, place.part, self.tables)
 
     def _start_structural(self) -> None:
