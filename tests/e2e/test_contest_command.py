@@ -213,6 +213,7 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     runner = CliRunner()
     missing = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
     assert missing.exit_code == 1 and "CTLCardinality.xml: No such file" in missing.output
+    assert missing.stdout == "CANNOT_COMPUTE\n"
     write(folder, "CTLCardinality", "<all-paths><sometimes/></all-paths>")
     unknown = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
     assert unknown.exit_code == 0 and "a: line 2: `sometimes` is not known" in unknown.output
@@ -226,7 +227,8 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     assert stranger.exit_code == 0 and "a: the net has no `no`" in stranger.output
     assert "FORMULA a CANNOT_COMPUTE" in stranger.output
     (folder / "model.pnml").write_text("<pnml>")
-    assert runner.invoke(app, ["contest", str(folder), "StateSpace"]).exit_code == 1
+    damaged = runner.invoke(app, ["contest", str(folder), "StateSpace"])
+    assert damaged.exit_code == 1 and damaged.stdout == "CANNOT_COMPUTE\n"
     assert runner.invoke(app, ["contest", str(folder), "Everything"]).exit_code == 2
 
 

@@ -21,7 +21,8 @@ unless a dead marking is reachable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
 
 from pn2code.contest.tables import Tables
 
@@ -29,7 +30,8 @@ MOST_BINDINGS = 5_000
 """Of a net with more nothing is implied."""
 MOST_MARKINGS = 24
 """That are looked at for what can occur with the tokens of a binding alone."""
-_PASSES = 20
+_ROUNDS = 50
+"""So often each transition is looked at again at most; what is known then is right, too."""
 
 
 class Implied:
@@ -68,7 +70,7 @@ class Implied:
     # --- the closure ------------------------------------------------------------------------------
 
     def _close(self) -> None:
-        """Until nothing is added any more, or after so many passes: what is known is right at any time."""
+        """Until nothing is added any more."""
         self.of = {b: i for i, t in enumerate(self.tables.transitions.values()) for b in t}
         if len(self.of) != len(self.tables.pre):
             return
@@ -81,30 +83,40 @@ class Implied:
                 if n > pre.get(p, 0):
                     self.fillers[p].add(self.of[b])
         self.free = [b for b, pre in enumerate(self.tables.pre) if not pre]
-        alone = {b: self._alone(b) for b in self.of}
-        wanted = {b: list(self._wanted(b)) for b in self.of}
-        for _ in range(_PASSES):
-            before = list(self.closed)
-            for i, bindings in enumerate(self.tables.transitions.values()):
-                found = self.all
-                for b in bindings:
-                    found &= alone[b] | self._filling(wanted[b])
-                    if not found:
-                        break
-                self.closed[i] |= found
-                for j in _bits(self.closed[i]):
-                    self.closed[i] |= self.closed[j]
-            if self.closed == before:
+        self.alone = [sorted(self._alone(b)) for b in range(len(self.tables.pre))]
+        self.wanted = [list(self._wanted(b)) for b in range(len(self.tables.pre))]
+        users: list[set[int]] = [set() for _ in self.names]
+        for b, i in self.of.items():
+            for j in (*self.alone[b], *(f for p in self.wanted[b] for f in self.fillers[p])):
+                users[j].add(i)
+        bindings = list(self.tables.transitions.values())
+        todo = deque(range(len(self.names)))
+        waits = set(todo)
+        for _ in range(_ROUNDS * len(self.names)):
+            if not todo:
                 return
+            i = todo.popleft()
+            waits.discard(i)
+            found = self.closed[i] | self._of_all(bindings[i])
+            if found != self.closed[i]:
+                self.closed[i] = found
+                new = users[i] - waits
+                waits |= new
+                todo.extend(new)
 
-    def _filling(self, places: list[int]) -> int:
-        """What all transitions that fill one of the places imply."""
-        found = 0
-        for p in places:
-            common = self.all
-            for i in self.fillers[p]:
-                common &= self.closed[i]
-            found |= common
+    def _of_all(self, bindings: Sequence[int]) -> int:
+        """What all bindings of a transition imply; what is implied by what they imply is there as well."""
+        found = self.all
+        for b in bindings:
+            own = 0
+            for i in self.alone[b]:
+                own |= self.closed[i]
+            for p in self.wanted[b]:
+                common = self.all
+                for i in self.fillers[p]:
+                    common &= self.closed[i]
+                own |= common
+            found &= own
         return found
 
     def _wanted(self, b: int) -> Iterator[int]:
@@ -114,14 +126,14 @@ class Implied:
             if (n > post.get(p, 0)) if self.again else (n > initial[p]):
                 yield p
 
-    def _alone(self, b: int) -> int:
+    def _alone(self, b: int) -> set[int]:
         """What can occur with the tokens that a binding takes."""
         first = dict(self.tables.pre[b])
-        seen, todo, found = {_key(first)}, [first], 0
+        seen, todo, found = {_key(first)}, [first], set[int]()
         while todo:
             marking = todo.pop()
             for other in self._enabled(marking):
-                found |= 1 << self.of[other]
+                found.add(self.of[other])
                 after = dict(marking)
                 for p, n in self.tables.pre[other].items():
                     after[p] -= n
@@ -143,10 +155,3 @@ class Implied:
 
 def _key(marking: Mapping[int, int]) -> frozenset[tuple[int, int]]:
     return frozenset((p, n) for p, n in marking.items() if n)
-
-
-def _bits(mask: int) -> Iterator[int]:
-    while mask:
-        low = mask & -mask
-        yield low.bit_length() - 1
-        mask ^= low
