@@ -213,9 +213,11 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     runner = CliRunner()
     missing = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
     assert missing.exit_code == 1 and "CTLCardinality.xml: No such file" in missing.output
+    assert missing.stdout == "CANNOT_COMPUTE\n"
     write(folder, "CTLCardinality", "<all-paths><sometimes/></all-paths>")
     unknown = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
-    assert unknown.exit_code == 1 and "line 2: `sometimes` is not known" in unknown.output
+    assert unknown.exit_code == 0 and "a: line 2: `sometimes` is not known" in unknown.output
+    assert "FORMULA a CANNOT_COMPUTE" in unknown.output
     write(
         folder,
         "CTLFireability",
@@ -225,7 +227,8 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     assert stranger.exit_code == 0 and "a: the net has no `no`" in stranger.output
     assert "FORMULA a CANNOT_COMPUTE" in stranger.output
     (folder / "model.pnml").write_text("<pnml>")
-    assert runner.invoke(app, ["contest", str(folder), "StateSpace"]).exit_code == 1
+    damaged = runner.invoke(app, ["contest", str(folder), "StateSpace"])
+    assert damaged.exit_code == 1 and damaged.stdout == "CANNOT_COMPUTE\n"
     assert runner.invoke(app, ["contest", str(folder), "Everything"]).exit_code == 2
 
 
@@ -244,10 +247,32 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     ],
 )
 def test_formulas_that_are_wrong(folder: Path, formula: str, why: str) -> None:
-    """A clear error, and no answer."""
-    write(folder, "CTLCardinality", f"<all-paths>{formula}</all-paths>")
+    """A clear error, and no answer; the others are answered all the same."""
+    right = f"<all-paths><finally>{ONE_IN_Q}</finally></all-paths>"
+    write(folder, "CTLCardinality", f"<all-paths>{formula}</all-paths>", right)
     done = CliRunner().invoke(app, ["contest", str(folder), "CTLCardinality"])
-    assert done.exit_code == 1 and why in done.stderr and not done.stdout
+    assert done.exit_code == 0 and done.stderr.startswith("pn2code: a: line 2: ")
+    assert why in done.stderr
+    assert values(done.stdout.splitlines()) == {"a": "CANNOT_COMPUTE", "b": "TRUE"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("<id>b</id>", "<id>a</id>", "a: several formulas have this name"),
+        ("<id>b</id>", "<id/>", "line 2: a property without an id"),
+        ("<formula>", "<no>", "a: line 2: a property without a formula"),
+    ],
+)
+def test_properties_that_are_wrong(folder: Path, old: str, new: str, why: str) -> None:
+    """Two formulas of one name would be two answers to one question."""
+    right = f"<all-paths><finally>{ONE_IN_Q}</finally></all-paths>"
+    write(folder, "CTLCardinality", right, f"<negation>{right}</negation>")
+    path = folder / "CTLCardinality.xml"
+    text = path.read_text().replace(old, new)
+    path.write_text(text.replace("</formula>", "</no>") if new == "<no>" else text)
+    done = CliRunner().invoke(app, ["contest", str(folder), "CTLCardinality"])
+    assert why in done.stderr and "TRUE" not in done.stdout and "FALSE" not in done.stdout
 
 
 def test_formulas_of_another_kind_are_not_known(folder: Path) -> None:
@@ -332,3 +357,25 @@ def test_more_tokens_than_are_made(tmp_path: Path) -> None:
         done = CliRunner().invoke(app, ["contest", str(tmp_path), "ReachabilityDeadlock"])
         assert done.exit_code == 0 and wanted in done.stdout
         assert ("the initial marking cannot be made" in done.stderr) == (wanted != "TRUE")
+
+
+def test_numbers_that_the_engine_does_not_read(tmp_path: Path) -> None:
+    """Equations and reductions have no limit; what they do not know is not known."""
+    text = net(
+        place("p", "", "10000000000"),
+        place("q"),
+        transition("go"),
+        arc("p", "go"),
+        arc("go", "q"),
+        kind="ptnet",
+    )
+    (tmp_path / "model.pnml").write_text(text)
+    assert values(said(tmp_path, "ReachabilityDeadlock")) == {"ReachabilityDeadlock": "TRUE"}
+    assert values(said(tmp_path, "OneSafe")) == {"OneSafe": "FALSE"}
+    assert said(tmp_path, "StateSpace") == ["CANNOT_COMPUTE"]
+    assert said(tmp_path, "QuasiLiveness", "--only", "walk") == [
+        "FORMULA QuasiLiveness CANNOT_COMPUTE"
+    ]
+    bounds = [f"<place-bound>{p}</place-bound>" for p in ("<place>p</place>", "<place>q</place>")]
+    write(tmp_path, "UpperBounds", *bounds)
+    assert values(said(tmp_path, "UpperBounds")) == {"a": "10000000000", "b": "CANNOT_COMPUTE"}

@@ -63,6 +63,7 @@ def contest(
         if net is None:
             net = front.load(folder / "model.pnml", d, compute=compute)
             if net is None:
+                typer.echo(UNKNOWN)
                 stop(d, Format.FULL)
     if net is None:
         typer.echo(UNKNOWN)
@@ -88,6 +89,7 @@ def contest(
                 typer.echo(line)
         except FormulaError as error:
             typer.echo(f"pn2code: {error}", err=True)
+            typer.echo(UNKNOWN)
             raise typer.Exit(Exit.MODEL) from None
         except GameError as problem:  # more tokens than are made
             typer.echo(f"pn2code: the initial marking cannot be made: {problem.message}", err=True)

@@ -12,7 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.contest.formulas import Formula, FormulaError, Tokens, read
+from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Tokens, read
+from pn2code.contest.implied import Implied
 from pn2code.contest.tables import Tables
 from pn2code.contest.temporal import check
 
@@ -23,6 +24,8 @@ FORMULAS = (
 GLOBAL = ("ReachabilityDeadlock", "OneSafe", "QuasiLiveness", "Liveness", "StableMarking")
 SPACE = "StateSpace"
 ALL = (SPACE, *GLOBAL, *FORMULAS)
+_FEW = 40
+"""For the liveness of so many transitions the net is reduced."""
 
 
 @frozen
@@ -32,10 +35,12 @@ class Part:
     Args:
         kind: "reach", "bound", "ctl" or "ltl": which methods can answer it.
         text: the question, after its number.
+        formula: of time: the same, if the net may be reduced for it.
     """
 
     kind: str
     text: str
+    formula: Formula | None = None
 
 
 @frozen
@@ -83,6 +88,9 @@ def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
         raise KeyError(examination)
     found = []
     for question in read(folder / f"{examination}.xml"):
+        if question.formula is None:
+            found.append(Asked(question.name, why_not=question.why_not))
+            continue
         try:
             found.append(_of_formula(tables, examination, question.name, question.formula))
         except FormulaError as error:
@@ -113,18 +121,37 @@ def _one_safe(tables: Tables) -> Asked:
 
 
 def _quasi_live(tables: Tables) -> Asked:
-    """Each transition can occur."""
-    parts = tuple(Part("reach", f"reach {_enabled(t)}") for t in tables.transitions.values())
+    """Each transition can occur: asked of those that no other one implies."""
+    parts = tuple(_can_occur(tables, name) for name in Implied(tables, again=False).asked())
     return Asked("QuasiLiveness", parts, decides=False, value=False)
 
 
 def _live(tables: Tables) -> Asked:
-    """Each transition can occur again and again: there is no deadlock, and each can occur at all."""
-    enabled = [_enabled(t) for t in tables.transitions.values()]
-    parts = tuple(Part("ctl", f"ctl AG EF {e}") for e in enabled)
-    hints = [(Part("reach", "reach dead"), True)] if enabled else []
-    hints += [(Part("reach", f"reach {e}"), False) for e in enabled]
+    """Each transition can occur again and again: there is no deadlock, and each can occur at all.
+
+    Asked of those that no other one implies; if each implies all others, it is enough that there is no deadlock.
+    """
+    dead = Part("reach", "reach dead")
+    implied = Implied(tables, again=True)
+    if tables.transitions and implied.is_one:
+        return Asked("Liveness", (dead,), is_turned=True)
+    names = implied.asked()
+    parts = tuple(_can_always_occur(tables, name, len(names) <= _FEW) for name in names)
+    hints = [(dead, True)] if tables.transitions else []
+    first = Implied(tables, again=False).asked()
+    hints += [(_can_occur(tables, name), False) for name in first]
     return Asked("Liveness", parts, decides=False, value=False, hints=tuple(hints))
+
+
+def _can_occur(tables: Tables, name: str) -> Part:
+    return Part("reach", f"reach {_enabled(tables.transitions[name])}")
+
+
+def _can_always_occur(tables: Tables, name: str, is_reduced: bool) -> Part:
+    """That a transition is live; whether the net is reduced for it."""
+    text = f"ctl AG EF {_enabled(tables.transitions[name])}"
+    exists = Op("E", (Op("F", (Fireable((name,)),)),))
+    return Part("ctl", text, Op("A", (Op("G", (exists,)),)) if is_reduced else None)
 
 
 def _stable(tables: Tables) -> Asked:

@@ -74,10 +74,17 @@ Formula = AtMost | Fireable | Truth | Op | Tokens
 
 @frozen
 class Question:
-    """One formula of a file, under the contest's name for it."""
+    """One formula of a file.
+
+    Args:
+        name: the contest's name for it.
+        formula: None: it is not as the contest writes formulas.
+        why_not: what is wrong with it then.
+    """
 
     name: str
-    formula: Formula
+    formula: Formula | None
+    why_not: str = ""
 
 
 _OPERATORS = {
@@ -88,10 +95,10 @@ _OPERATORS = {
 
 
 def read(path: Path) -> list[Question]:
-    """The questions of a file.
+    """The questions of a file. What is wrong with one formula takes nothing from the others.
 
     Raises:
-        FormulaError: it cannot be read, or something in it is not known.
+        FormulaError: it cannot be read, or a question has no name.
     """
     try:
         data = path.read_bytes()
@@ -104,7 +111,13 @@ def read(path: Path) -> list[Question]:
         root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as error:
         raise FormulaError(f"{path}: {error.msg}") from error
-    return [_question(p) for p in root if _tag(p) == "property"]
+    found: dict[str, Question] = {}
+    for question in (_question(p) for p in root if _tag(p) == "property"):
+        name = question.name
+        if name in found:
+            question = Question(name, None, "several formulas have this name")
+        found[name] = question
+    return list(found.values())
 
 
 def _tag(node: etree._Element) -> str:
@@ -117,10 +130,15 @@ def _children(node: etree._Element) -> list[etree._Element]:
 
 def _question(node: etree._Element) -> Question:
     found = {_tag(c): c for c in _children(node)}
-    if "id" not in found or "formula" not in found:
-        raise FormulaError(f"line {node.sourceline}: a property without an id or a formula")
-    name = (found["id"].text or "").strip()
-    return Question(name, _formula(_only(found["formula"])))
+    name = (found["id"].text or "").strip() if "id" in found else ""
+    if not name:
+        raise FormulaError(f"line {node.sourceline}: a property without an id")
+    try:
+        if "formula" not in found:
+            raise FormulaError(f"line {node.sourceline}: a property without a formula")
+        return Question(name, _formula(_only(found["formula"])))
+    except FormulaError as error:
+        return Question(name, None, str(error))
 
 
 def _only(node: etree._Element) -> etree._Element:

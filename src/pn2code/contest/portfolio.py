@@ -284,6 +284,8 @@ class _Portfolio:
             return Question(
                 number, place.part.kind, TRUE, formula=of_time.formula, is_side=of_time.is_side
             )
+        if place.part.formula is not None:
+            return Question(number, place.part.kind, TRUE, formula=place.part.formula)
         return question(number, place.part, self.tables)
 
     def _start_structural(self) -> None:
@@ -328,6 +330,8 @@ class _Portfolio:
                 open_ = [n for n in open_ if n >= self.given]
             if not open_ or left < _LEAST_S or self.only == "structure":
                 break
+            if not self._fits(self.tables):  # equations and reductions have no limit
+                break
             self.given = len(self.places)
             length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
             lanes = self._lanes(open_, number, length)
@@ -341,7 +345,8 @@ class _Portfolio:
             yield from self._noted(answer)
             if all(line.is_done for line in self.lines):
                 return
-            if len(self.places) > self.given and self.only != "structure":
+            is_asked = self.only != "structure" and self._fits(self.tables)
+            if len(self.places) > self.given and is_asked:
                 yield from self.rounds()
                 return
 
@@ -569,6 +574,8 @@ def space(
     program: Path, tables: Tables, *, seconds: float, mebibytes: int, only: str = ""
 ) -> Space | None:
     """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
+    if not tables.fits():
+        return None
     ends = time.monotonic() + seconds
     lanes: list[Iterable[Task]] = []
     if only in ("", "explore"):

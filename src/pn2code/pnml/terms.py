@@ -282,7 +282,8 @@ class Terms:
                 node,
                 f"use {of.low} to {of.high}",
             )
-        return Term(((number(value), node),), of if of is not None else INTEGER)
+        text = number(value) if value >= 0 else f"({number(value)})"  # 1`~5 would be two operators
+        return Term(((text, node),), of if of is not None else INTEGER)
 
     def _boolean(self, node: Node, sort: Sort | None) -> Term:
         value = "true" if node.get("value").lower() == "true" else "false"

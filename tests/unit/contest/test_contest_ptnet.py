@@ -43,6 +43,14 @@ def test_as_the_front_end_reads_it(tmp_path: Path) -> None:
     assert (tables.pre, tables.post) == (({0: 2}, {}), ({1: 2, 2: 1}, {}))
 
 
+def test_large_numbers(tmp_path: Path) -> None:
+    """Tables have no limit of their own."""
+    path = tmp_path / "model.pnml"
+    path.write_text(NET.replace("<text>3</text>", "<text>10000000000</text>"), encoding="utf-8")
+    tables = tables_of(path)
+    assert tables is not None and tables.initial[0] == 10_000_000_000 and not tables.fits()
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -67,7 +75,7 @@ def test_as_the_front_end_reads_it(tmp_path: Path) -> None:
         ("<text> 2 </text>", "<text>Default,2</text>"),
         ("<text> 2 </text>", "2"),
         ("<text> 2 </text>", "<text>2</text><text>3</text>"),
-        ("<text>3</text>", "<text>1234567890</text>"),
+        ("<text>3</text>", "<text>1234567890123456789</text>"),
         ("<text>3</text>", "3"),
     ],
 )

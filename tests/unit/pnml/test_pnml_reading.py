@@ -349,6 +349,21 @@ def test_no_token_is_wanted_of_which_there_are_to_be_none(tmp_path: Path) -> Non
     assert enabled(text, tmp_path) == ["x=a,y=b", "x=a,y=c"]
 
 
+def test_negative_numbers_in_multi_sets(tmp_path: Path) -> None:
+    """After a backquote they need parentheses; taken, they are patterns."""
+    span = named("N", '<finiteintrange start="-2" end="1"/>')
+    low, high = in_range(-2, -2, 1), in_range(-1, -2, 1)
+    text = net(
+        place("P", "N", op("add", number(2, low), high)),
+        place("Q", "N"),
+        transition("T"),
+        arc("P", "T", number(2, low)),
+        arc("T", "Q", op("add", number(3, low), high)),
+        declarations=span,
+    )
+    assert size(flat(text, tmp_path)) == (2, 1)
+
+
 def test_free_variables_range_over_large_sorts(tmp_path: Path) -> None:
     """CPN Tools enumerates at most 100 values; PNML has no such limit."""
     large = named("Large", '<finiteintrange start="0" end="149"/>') + variable("n", "Large")
