@@ -286,7 +286,8 @@ def _of_counted(said: Said, known: Known) -> Iterator[str]:
 def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
     """What may be the reason that there is no end of markings."""
     growing = found.growing()
-    if growing is not None:
+    is_said = found.covering is not None and not found.covering.grows
+    if growing is not None and not is_said:
         place, count = net.places[growing[0]], growing[1]
         what = "a number, text or list in a token may grow for ever"
         so = "so that there is no end of markings; is there a guard that limits it?"
