@@ -29,6 +29,7 @@ def test_the_riveting_cell_on_one_screen(root: Path, here: Path) -> None:
     assert code == 0
     assert len(lines) <= MOST_LINES
     assert lines[-1].startswith("Verdict: YES. All ")
+    assert lines[-1].endswith(" should be (arms in space: `check --geometry`).")
     assert any(line.startswith("Controller checks: ") for line in lines)
     assert sorted(path.name for path in here.iterdir()) == ["cell.traces"]
     assert all(path.name.endswith(".trace.jsonl") for path in (here / "cell.traces").iterdir())

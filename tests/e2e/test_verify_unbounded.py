@@ -61,6 +61,49 @@ def test_the_place_and_the_run_are_said(net: Path, tmp_path: Path) -> None:
     assert again.returncode == 0, again.stdout + again.stderr
 
 
+TIMER = """
+net Timer
+  standard
+  colset TU = unit timed;
+  page Top
+    place Clock : TU = 1`()
+    trans Tick
+      in Clock : ()
+      out Clock : ()@+3
+"""
+
+
+def test_a_time_that_goes_on_for_ever_is_said(tmp_path: Path) -> None:
+    """Without a limit nothing else would end it; where it is counted apart, or a limit is set, all is as it was."""
+    net = write(TIMER, tmp_path / "timer.cpn")
+    done = pn2code("verify", net, "--traces", tmp_path / "runs")
+    text = " ".join(done.stdout.split())
+    assert done.returncode == 3
+    assert (
+        "PARTIAL: the state space is infinite. Time goes on for ever, and each marking has its time"
+        in text
+    )
+    assert (
+        "`Top.Tick` can be repeated for ever, every 3 units of time, and all is as before" in text
+    )
+    assert "`--reduce time` counts markings that differ in the time alone as one" in text
+    assert "Grows, perhaps" not in text
+    (trace,) = (tmp_path / "runs").iterdir()
+    again = pn2code("replay", trace, net)
+    assert again.returncode == 0, again.stdout + again.stderr
+    said = json.loads(pn2code("verify", net, "--traces", tmp_path / "runs", "--json").stdout)
+    assert (said["why"], said["unbounded"]["places"], said["unbounded"]["later"]) == (
+        "infinite",
+        [],
+        3,
+    )
+    assert pn2code("verify", net, "--reduce", "time", "-o", tmp_path).returncode == 0
+    limited = json.loads(
+        pn2code("verify", net, "--max-states", "200", "--json", "-o", tmp_path).stdout
+    )
+    assert (limited["why"], limited["unbounded"]) == ("states", None)
+
+
 def test_bounds_are_refuted_whatever_was_seen(net: Path, tmp_path: Path) -> None:
     asked = (
         "bound C <= 7",

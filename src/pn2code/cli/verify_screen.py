@@ -30,6 +30,7 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
+from pn2code.verify.controller.premises import in_space
 from pn2code.verify.exploring.result import Exploration, Known, Trace
 from pn2code.verify.report import control_text
 from pn2code.verify.report.properties_text import said as said_of
@@ -286,7 +287,8 @@ def _of_counted(said: Said, known: Known) -> Iterator[str]:
 def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
     """What may be the reason that there is no end of markings."""
     growing = found.growing()
-    if growing is not None:
+    is_said = found.covering is not None and not found.covering.grows
+    if growing is not None and not is_said:
         place, count = net.places[growing[0]], growing[1]
         what = "a number, text or list in a token may grow for ever"
         so = "so that there is no end of markings; is there a guard that limits it?"
@@ -567,5 +569,10 @@ def _cut(line: str) -> str:
 
 
 def closing(said: Said) -> str:
-    """The last line."""
-    return outcome.closing(said.net, said.found, said.counts)
+    """The last line; a yes about a cell names what it is not about."""
+    text_ = outcome.closing(said.net, said.found, said.counts)
+    things = in_space(said.config) if said.config is not None and said.control is not None else ()
+    if not things or said.verdict != "yes":
+        return text_
+    listed = " and ".join(filter(None, (", ".join(things[:-1]), things[-1])))
+    return f"{text_.removesuffix('.')} ({listed} in space: `check --geometry`)."

@@ -18,6 +18,7 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import Block, OutputFile
+from pn2code.toolchain.orphans import tools_of_ours
 
 TOOL_MISSING = register(
     "tool-missing",
@@ -90,16 +91,10 @@ def build(
             + ("" if compiler else f"; {WITHOUT_ROOT}"),
         )
         return None
-    done = subprocess.run(
-        [make, "-s", "-C", str(folder), f"-j{os.cpu_count() or 1}", f"CC={compiler}", target],
-        capture_output=True,
-        text=True,
-        errors="replace",
-        check=False,
-        env={**os.environ, "LC_ALL": "C"},
+    status, output = _made(
+        [make, "-s", "-C", str(folder), f"-j{os.cpu_count() or 1}", f"CC={compiler}", target]
     )
-    output = done.stdout + done.stderr
-    if done.returncode == 0:
+    if status == 0:
         (folder / LOG).unlink(missing_ok=True)
         return folder / target
     log = folder / LOG
@@ -110,6 +105,28 @@ def build(
         where = f"the log could not be written: {problem.strerror}"
     report_failure(folder, output, tuple(files), where, d)
     return None
+
+
+def _made(command: list[str]) -> tuple[int, str]:
+    """The exit code of `make`, and all that it said. It ends with this process, and so do its compilers."""
+    with tools_of_ours() as group:
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            process_group=group.number,
+            env={**os.environ, "LC_ALL": "C"},
+        )
+        try:
+            said, errors = process.communicate()
+        except BaseException:
+            group.end(process)
+            process.communicate()
+            raise
+    return process.returncode, said + errors
 
 
 def report_failure(

@@ -17,7 +17,6 @@ import hashlib
 import os
 import shlex
 import shutil
-import signal
 import subprocess
 import tempfile
 import time
@@ -43,6 +42,7 @@ from pn2code.toolchain.build import (
     find_compiler,
     report_failure,
 )
+from pn2code.toolchain.orphans import tools_of_ours
 
 CACHE_UNUSABLE = register(
     "program-cache",
@@ -462,37 +462,37 @@ def _run(
 ) -> subprocess.CompletedProcess[str] | None:
     """Runs a tool to its end; None when it is not there.
 
-    It does not hear the terminal's Ctrl-C, which would look like a failure of its own. Its temporary files lie in the
-    folder, and go with it.
+    It does not hear the terminal's Ctrl-C, which would look like a failure of its own, and ends when this process is
+    killed. Its temporary files lie in the folder, and go with it.
 
     Raises:
         _InterruptedError: it was wished, and the tool has been ended.
     """
     own = {"TMPDIR": str(folder)} if folder else {}
-    try:
-        process = subprocess.Popen(
-            command,
-            cwd=folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-            env={**os.environ, **own, "LC_ALL": "C"},
-        )
-    except OSError:
-        return None
-    try:
-        while True:
-            with suppress(subprocess.TimeoutExpired):
-                said, errors = process.communicate(timeout=_LOOK_S)
-                break
-            if interrupted():
-                raise _InterruptedError
-    except BaseException:
-        with suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
-        raise
+    with tools_of_ours() as group:
+        try:
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                errors="replace",
+                process_group=group.number,
+                env={**os.environ, **own, "LC_ALL": "C"},
+            )
+        except OSError:
+            return None
+        try:
+            while True:
+                with suppress(subprocess.TimeoutExpired):
+                    said, errors = process.communicate(timeout=_LOOK_S)
+                    break
+                if interrupted():
+                    raise _InterruptedError
+        except BaseException:
+            group.end(process)
+            process.communicate()
+            raise
     return subprocess.CompletedProcess(command, process.returncode, said, errors)

@@ -120,6 +120,50 @@ def test_a_place_that_does_not(case: str) -> None:
     assert looked(flat(HEAD + BOUNDED[case])) is None
 
 
+LATER = """
+      place Clock : TI = 1`0
+      trans Tick delay @+2
+        in Clock : n
+        out Clock : n
+      trans Tock
+        in Clock : n
+        out Clock : n@+3
+"""
+
+
+def test_time_that_goes_on_alone(tmp_path: Path) -> None:
+    """Nothing is more than before, and there is no end of markings, since each has its time."""
+    net = flat(HEAD + LATER)
+    assert Search(net, {}).look(walks=10) is None, (
+        "who counts equal markings as one asks for growth"
+    )
+    run = Search(net, {}, time_alone=True).look(walks=10)
+    assert run is not None and run.grows == () and run.later in (2, 3)
+    assert f"can be repeated for ever, every {run.later} units of time" in run.steps(net)
+    assert run.rounds_to(0, 1) is None
+    assert write(net, {}, run, tmp_path / "run.trace.jsonl", 5)
+    end = json.loads((tmp_path / "run.trace.jsonl").read_text().splitlines()[-1])
+    assert end["why"] == "steps"
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        LATER.replace("trans Tick", "trans Tick guard [time () < 40]"),
+        LATER.replace("out Clock : n", "out Clock : n + 1"),
+        LATER.replace("in Clock : n", "in Clock : n\n        in A : n"),
+        LATER.partition("trans Tock")[0].replace(
+            "trans Tick delay @+2",
+            "trans Tick guard [!fired < 40] delay @+2 code action (fired := !fired + 1)",
+        ),
+        LATER.replace("@+2", "@+0").replace("@+3", ""),
+    ],
+    ids=["a look at the clock", "another colour", "tokens are used up", "a reference", "it stands"],
+)
+def test_time_does_not_go_on_alone(case: str) -> None:
+    assert Search(flat(HEAD + case), {}, time_alone=True).look(walks=10) is None
+
+
 def test_only_places_that_are_asked_for() -> None:
     net = flat(HEAD + ROUND)
     (c,) = (p.index for p in net.places if p.short == "C")

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from helpers.small_cell import NET, TOML, write
+from helpers.tool_cell import tool_cell
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import meaning as m
 from pn2code.verdict.opened import read
-from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.premises import Premises, in_space
 from pn2code.verify.controller.replies import Replies
 
 CELL = Premises(Replies("", "in time"), ("measured",), durations=True, sensors=True)
@@ -52,3 +53,16 @@ def test_commands_take_time_in_untimed_cells_too(tmp_path: Path) -> None:
     assert premises(tmp_path / "device", net, toml).durations
     net = net.replace(" code action drill ()", "")
     assert not premises(tmp_path / "none", net, toml).durations
+
+
+def test_what_no_state_shows_is_named(root: Path, tmp_path: Path) -> None:
+    """What a cell does not have, it does not say."""
+
+    def of(cell: Path) -> tuple[str, ...]:
+        opened = read(cell, {}, Diagnostics())
+        assert opened is not None and opened.config is not None
+        return in_space(opened.config)
+
+    assert of(root / "examples/handover") == ("arms", "parts")
+    assert of(root / "examples/minimal") == ("arms",)
+    assert of(tool_cell(tmp_path / "tools")) == ("arms", "parts", "tools")

@@ -125,10 +125,16 @@ def good_of(good: int, number: int) -> str:
 
 
 def endless(net: FlatNet, found: Exploration) -> str:
-    """The places that grow without bound, and the run that shows it, in a sentence with a blank after it; or ""."""
+    """What grows without bound, and the run that shows it, in sentences with a blank after them; or ""."""
     run = found.covering
     if run is None:
         return ""
+    if not run.grows:
+        file = f" (run: {run.file})" if run.file is not None else ""
+        return (
+            f"Time goes on for ever, and each marking has its time: {run.steps(net)}, and all is as before{file}. "
+            "`--reduce time` counts markings that differ in the time alone as one; `--max-states` explores so many. "
+        )
     names = ", ".join(f"`{name}`" for name in run.places(net))
     what = f"Place {names} grows" if len(run.grows) == 1 else f"Places {names} grow"
     file = f" (run: {run.file})" if run.file is not None else ""

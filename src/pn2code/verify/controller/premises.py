@@ -153,6 +153,16 @@ def _handles(primitive: Primitive) -> bool:
     return primitive.handling is not None and primitive.handling.effect not in CHANGES
 
 
+def in_space(config: CellConfig) -> tuple[str, ...]:
+    """What of a cell no marking shows, so that an answer about its states says nothing of it: arms, parts, tools."""
+    commands = config.primitives.values()
+    return (
+        *(["arms"] if any(p.command in MOTIONS for p in commands) else []),
+        *(["parts"] if any(_handles(p) for p in commands) else []),
+        *(["tools"] if config.tools_at_start else []),
+    )
+
+
 def _is_possibility(asked: m.Asked) -> bool:
     """Whether it says that something can happen."""
     match asked:

@@ -16,6 +16,10 @@ round counts only if
 * in a timed net no transition at all takes tokens from a place of G (else the clock might stand still where it went on
   in the first round), all other places hold the same relative to the clock, and time is not real.
 
+In a timed net a node has its time, so a round that adds nothing has no end either if time goes on in it: everything is
+as it was, but later (`time_alone`). There, too, what its transitions do depends on their bindings alone, and nothing in
+the net may look at the time (`time_reduction`).
+
 A run is only given when the token game has played two more rounds, each of which added what the first one did.
 
 The search walks at random: uniformly, and with transitions preferred in an order that changes from walk to walk. It
@@ -44,6 +48,7 @@ from pn2code.semantics.values.data import MlException, MlLimit, Timed
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.trace.writing import TraceFile, TraceUnwritableError
 from pn2code.unfold.purity import impure
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 
 WALK = 300
 """Steps of the longest walk; the first ones are shorter, so that short runs are found first."""
@@ -71,6 +76,7 @@ class Covering:
         round: those that are repeated.
         grows: (index of a place, tokens that a round adds), the most first.
         holds: the tokens of each of them before the first round.
+        later: how far a round brings the clock; 0 where places grow.
         file: the trace of the prefix and one round; None: it was not written.
     """
 
@@ -78,6 +84,7 @@ class Covering:
     round: tuple[BindingElement, ...]
     grows: tuple[tuple[int, int], ...]
     holds: tuple[int, ...]
+    later: int = 0
     file: Path | None = None
 
     def rounds_to(self, place: int, tokens: int) -> int | None:
@@ -96,6 +103,8 @@ class Covering:
         turn = ", ".join(f"`{name}`" for name in named(net, self.round))
         after = len(self.prefix)
         begins = f"after {after} step{'s' * (after != 1)}" if after else "from the start"
+        if not self.grows:
+            return f"{begins} {turn} can be repeated for ever, every {self.later} units of time"
         adds = ", ".join(f"{n} to `{net.places[p].name}`" for p, n in self.grows)
         return f"{begins} {turn} can be repeated for ever, and each round adds {adds}"
 
@@ -113,19 +122,26 @@ class Search:
         net: the net.
         storage: as for `Game`.
         among: only places of these count as growing; None: all.
+        time_alone: whether a round counts after which all is as before, but later.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
 
     def __init__(
-        self, net: FlatNet, storage: Mapping[str, str], among: Collection[int] | None = None
+        self,
+        net: FlatNet,
+        storage: Mapping[str, str],
+        among: Collection[int] | None = None,
+        *,
+        time_alone: bool = False,
     ) -> None:
         self._asked = 0
         self.net = net
         self.game = Game(net, storage, files=Files(None))
         self._nodes = Nodes(net)
         self._among = None if among is None else frozenset(among)
+        self._time_alone = time_alone and net.timed and why_not_reducible(net) is None
         effects = effects_of(net.program)
         self._pure = frozenset(t.index for t in net.transitions if _is_pure(t, net, effects))
         self._takes = {
@@ -201,7 +217,11 @@ class Search:
             elements.append(element)
             size = _sizes(marking)
             for i in range(len(markings) - 1, -1, -1):
-                if size != sizes[i] and all(a <= b for a, b in zip(sizes[i], size, strict=True)):
+                if size == sizes[i]:
+                    may_be = self._time_alone and marking.time > markings[i].time
+                else:
+                    may_be = all(a <= b for a, b in zip(sizes[i], size, strict=True))
+                if may_be:
                     self._asked += 1 + sum(size) // _TOKENS
                     found = self._covering(markings[i], marking, elements, i)
                     if found is not None:
@@ -216,9 +236,10 @@ class Search:
         """The run if `after`, where `elements` end, covers `before`, which comes after `first` of them."""
         added = _added(before, after)
         turn = elements[first:]
-        if not added or not self._can_be_repeated(turn, added):
+        is_later = not added and self._time_alone and _is_later(before, after)
+        if not (added or is_later) or not self._can_be_repeated(turn, added):
             return None
-        if self._among is not None and not self._among.intersection(added):
+        if added and self._among is not None and not self._among.intersection(added):
             return None
         # Markings whose zeros have other signs are equal, but inscriptions can tell them apart.
         signs = self._nodes.signs(before)
@@ -229,12 +250,15 @@ class Search:
             again = self._played(marking, turn)
             if again is None or _added(marking, again) != added:
                 return None
+            if is_later and not _is_later(marking, again):
+                return None
             if self._nodes.signs(again) != signs:
                 return None
             marking = again
         grows = sorted(((p, len(more)) for p, more in added.items()), key=lambda x: (-x[1], x[0]))
         holds = tuple(len(before.places[p]) for p, _ in grows)
-        return Covering(tuple(elements[:first]), tuple(turn), tuple(grows), holds)
+        later = int(after.time - before.time) if is_later else 0
+        return Covering(tuple(elements[:first]), tuple(turn), tuple(grows), holds, later)
 
     def _can_be_repeated(self, turn: Sequence[BindingElement], grows: Collection[int]) -> bool:
         """Whether more tokens in the places that grow hinder none of the steps (see above)."""
@@ -331,6 +355,18 @@ def _added(before: Marking, after: Marking) -> dict[int, MultiSet]:
             return {}
         found[place] = more - less
     return found
+
+
+def _is_later(before: Marking, after: Marking) -> bool:
+    """Whether all is the same relative to the clock, which has gone on."""
+    return (
+        after.time > before.time
+        and before.references == after.references
+        and all(
+            _is_same(old, new, before.time, after.time)
+            for old, new in zip(before.places, after.places, strict=True)
+        )
+    )
 
 
 def _colours(tokens: PlaceMarking) -> MultiSet:

@@ -36,7 +36,7 @@ from pn2code.verify.codes import (
 from pn2code.verify.exploring import covering, nondeterminism, programs
 from pn2code.verify.exploring.counts import Counts
 from pn2code.verify.exploring.grace import Grace
-from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
+from pn2code.verify.exploring.limits import REACHED, Limits, Reduction, default_memory
 from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
@@ -160,12 +160,15 @@ def explore(
     options = options or ExploreOptions()
     bounds = options.sizes.bounds if options.sizes is not None else None
     open_places = None
+    is_limited = limits.max_states is not None
+    time_alone = _may_go_on(net, limits)
     if bounds is not None:
         open_places = [p.index for p in net.places if p.index not in bounds]
-        if not open_places:
+        if not open_places and not time_alone:
             options = replace(options, covering=False)  # no place can grow without bound
-    is_limited = limits.max_states is not None
-    with Meanwhile(net, storage, open_places, is_limited=is_limited) as search:
+    with Meanwhile(
+        net, storage, open_places, is_limited=is_limited, time_alone=time_alone
+    ) as search:
         found = _explored(net, storage, limits, d, options, search if options.covering else None)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not options.covering or not is_open:
@@ -177,6 +180,17 @@ def explore(
         trace = options.traces / f"{options.stem}.unbounded.trace.jsonl"
         run = covering.kept(run, net, storage, trace)
     return replace(found, why=INFINITE, covering=run)
+
+
+def _may_go_on(net: FlatNet, limits: Limits) -> bool:
+    """Whether nothing would end the exploration of a net whose time goes on for ever: no limit, and no reduction."""
+    is_limited = (
+        limits.max_states is not None
+        or limits.memory is not None
+        or limits.processor_seconds is not None
+        or limits.deadline.seconds is not None
+    )
+    return net.timed and not is_limited and Reduction.TIME not in limits.reductions
 
 
 def _explored(

@@ -37,6 +37,7 @@ class Meanwhile:
         among: the places that may grow; None: all.
         is_limited: whether the exploration may come to a limit of its own. Else the search goes on for longer: without
             a limit there is no other end of an infinite state space.
+        time_alone: whether a run counts in which nothing but the time is another.
     """
 
     def __init__(
@@ -46,11 +47,13 @@ class Meanwhile:
         among: Collection[int] | None = None,
         *,
         is_limited: bool = True,
+        time_alone: bool = False,
     ) -> None:
         self._net = net
         self._storage = storage
         self._among = among
         self._is_limited = is_limited
+        self._time_alone = time_alone
         self._ends = threading.Event()
         self._is_waited_for = threading.Event()
         self._thread: threading.Thread | None = None
@@ -107,7 +110,7 @@ class Meanwhile:
             with suppress(OSError, AttributeError):  # a system without priorities of threads
                 os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
         with suppress(GameError):  # the explorer has said so
-            search = Search(self._net, self._storage, self._among)
+            search = Search(self._net, self._storage, self._among, time_alone=self._time_alone)
 
             def is_over() -> bool:
                 has_done = self._is_limited or self._is_waited_for.is_set()

@@ -143,7 +143,7 @@ class Exploration:
         arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
             None where bounds are not known.
         different: for each place, how many multi-sets it held; 0 where that is not counted, since its colours are few.
-        covering: of "infinite": the run that shows that places grow without bound.
+        covering: of "infinite": the run that shows that places, or the time alone, grow without bound.
         known: of "counted": what is known of all markings nevertheless.
     """
 
@@ -377,11 +377,12 @@ def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:
 
 
 def _covering_row(net: FlatNet, run: Covering | None) -> dict[str, Any] | None:
-    """The places that grow without bound, and the run: `prefix` steps, then a `round` that can be repeated."""
+    """What grows without bound, places or time, and the run: `prefix` steps, then a `round` that can be repeated."""
     if run is None:
         return None
     return {
         "places": [{"name": net.places[p].name, "adds": more} for p, more in run.grows],
+        "later": run.later,
         "prefix": len(run.prefix),
         "round": [net.transitions[e.transition].name for e in run.round],
         "trace": str(run.file) if run.file is not None else None,
