@@ -84,9 +84,10 @@ def _cycle(cycle: Cycle, timeout: float) -> Iterator[str]:
     for other in cycle.others:
         yield f"  not counted: {other}"
     if cycle.at_least is not None:
+        stops = " (a belt with a stop may take none)" if cycle.has_stops else ""
         yield (
             f"Whoever comes late: no cycle takes less than {seconds_down(cycle.at_least)} s, if no command takes less "
-            "than its planned time."
+            f"than its planned time{stops}."
         )
     if cycle.at_most is not None:
         yield (
