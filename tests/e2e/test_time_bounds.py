@@ -12,9 +12,7 @@ from tools.adversary import times, wander
 from tools.adversary.wander import Pace
 from typer.testing import CliRunner
 
-from helpers import meeting_cell
-from helpers.belt_cell import TOML as belt_cell_toml
-from helpers.belt_cell import belt_cell
+from helpers import belt_cell, meeting_cell
 from helpers.netbuilder import cpn
 from helpers.thorough import amount
 from helpers.timed_runs_cell import NET, write
@@ -177,7 +175,7 @@ holds = "every fires(Sup'Start) is followed by fires(Sup'End) within 10.005 seco
 @pytest.mark.bullet
 def test_a_belt_with_a_stop_leaves_both_bounds(tmp_path: Path) -> None:
     """How far it runs is not followed: between nothing and all of its way."""
-    cell = belt_cell(tmp_path / "cell")
+    cell = belt_cell.belt_cell(tmp_path / "cell")
     (layout,) = asked(str(cell), code=3)["layouts"]
     (run,) = (c for c in layout["commands"] if "belt" in c["command"])
     assert run["least_s"] == 0.0 and run["most_s"] > 4.0
@@ -186,7 +184,7 @@ def test_a_belt_with_a_stop_leaves_both_bounds(tmp_path: Path) -> None:
     took = ran(cell, tmp_path / "run")
     assert 0.0 < cycle["at_least_s"] < took < cycle["at_most_s"]
     fast = tmp_path / "fast"
-    belt_cell(fast, toml=belt_cell_toml.replace("speed = 0.25", "speed = 2.0"))
+    belt_cell.belt_cell(fast, toml=belt_cell.TOML.replace("speed = 0.25", "speed = 2.0"))
     (other,) = asked(str(fast), code=3)["layouts"]
     assert other["cycle"]["at_least_s"] <= cycle["at_least_s"]
     assert other["cycle"]["at_most_s"] < cycle["at_most_s"]
