@@ -106,6 +106,7 @@ class Cycle:
         late: whose answer may come later than the supervisor waits for it, each as a clause.
         stops: what arms may be told and cannot do, so that a run stops.
         has_stops: whether belts come to a stop: they may take no time.
+        never: transitions that occur in no run with planned times, though the net permits them.
     """
 
     endings: tuple[Ending, ...]
@@ -119,6 +120,7 @@ class Cycle:
     late: tuple[str, ...] = ()
     stops: tuple[str, ...] = ()
     has_stops: bool = False
+    never: tuple[str, ...] = ()
 
     @property
     def least(self) -> int | None:
@@ -162,6 +164,7 @@ class Cycle:
             "at_most_s": _up(self.at_most),
             "others": list(self.others),
             "late": list(self.late),
+            "never": list(self.never),
             "situations": self.situations,
             "endings": [e.row() for e in self.endings],
         }

@@ -221,6 +221,7 @@ class _Look:
             late,
             tuple(stops),
             has_stops=self.doings.stops,
+            never=tuple(self._never()) if is_known else (),
         )
 
     def _endings(self) -> Iterator[Ending]:
@@ -262,6 +263,15 @@ class _Look:
             yield "a run may go on for ever, and never come to its end"
         if not search.ends and not search.why:
             yield "no run comes to its end"
+
+    def _never(self) -> Iterator[str]:
+        """What the net permits, but planned times do not: such as a timer that is over before the answer, or never."""
+        net, elements = self.graph.running.net, self.graph.elements
+        marks = {mark for arcs in self.search.successors for _, _, mark in arcs if mark >= 0}
+        occurs = {elements[mark].transition for mark in marks}
+        permitted = {e.transition for e in elements if not e.is_step and e.owner >= 0}
+        for transition in sorted(permitted - occurs):
+            yield net.transitions[transition].name
 
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
