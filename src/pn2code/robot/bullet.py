@@ -23,7 +23,7 @@ import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen, record
-from pn2code.robot import urdf
+from pn2code.robot import collision_meshes, urdf
 from pn2code.robot.backend import (
     BackendName,
     Beside,
@@ -214,7 +214,9 @@ class BulletBackend:
 
     def _load_urdf(self, name: str, text: str, *, fixed: bool = True, looks: bool = True) -> int:
         path = Path(self._folder.name) / f"{name.replace('/', '_')}.urdf"
-        path.write_text(urdf.for_bullet(text, looks), encoding="utf-8")
+        folder = Path(self._folder.name)
+        read = urdf.for_bullet(text, looks, lambda mesh: collision_meshes.for_bullet(mesh, folder))
+        path.write_text(read, encoding="utf-8")
         # Implicit cylinders: as hulls of 32 sides they would be up to 1 mm too thin.
         return int(
             self._p.loadURDF(

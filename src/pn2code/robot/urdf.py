@@ -7,6 +7,7 @@ for PyBullet. Any robot's URDF in the usual form can be read, so that users brin
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -404,12 +405,15 @@ def as_one_link(tree: Urdf) -> str:
     return str(etree.tostring(out, encoding="unicode", pretty_print=True))
 
 
-def for_bullet(text: str, looks: bool) -> str:
+def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda path: path) -> str:
     """The same URDF as PyBullet reads it right: shapes where the links are, without its own ideas of masses.
 
     PyBullet puts the *centre of gravity* of a base link where the link should be, refuses an `inertial` or a
     material with something missing, lets what slides go by the length of its axis, takes meshes that are
     `concave` for hollow, and cuts lines of more than 8191 bytes.
+
+    Args:
+        mesh_of: the file that it reads instead of one of a collision mesh.
     """
     root = etree.fromstring(text.encode())
     for tag in ("inertial",) if looks else ("inertial", "visual"):
@@ -422,6 +426,8 @@ def for_bullet(text: str, looks: bool) -> str:
             material.set("name", f"unnamed_{i}")
     for collision in root.iter("collision"):
         collision.attrib.pop("concave", None)
+        for mesh in collision.iter("mesh"):
+            mesh.set("filename", str(mesh_of(Path(mesh.get("filename", "")))))
     for axis in root.iter("axis"):
         numbers = np.array(_numbers(axis, "xyz", 3, "1 0 0"))
         length = float(np.linalg.norm(numbers))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -153,3 +155,109 @@ def test_arms_that_come_with_it_are_read_as_they_were() -> None:
             r'"[^"]*"', re.sub(r"<\?.*?\?>|<!--.*?-->", "", text)
         )
         assert np.isfinite(tree.centre).all()
+
+
+CORNERS = [*itertools.product((0.0, 0.1), (0.0, 0.2), (0.0, 0.3))]
+FACES = [
+    (0, 1, 3), (0, 3, 2), (4, 7, 5), (4, 6, 7), (0, 4, 5), (0, 5, 1),
+    (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3),
+]  # fmt: skip
+OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS)
+MESHES = {
+    "body.obj": OBJ + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES),
+    "loose.obj": OBJ + "f 1 2 3\n",
+    "text.stl": "solid body\n"
+    + "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join(f"vertex {' '.join(map(str, CORNERS[i]))}\n" for i in face)
+        + "endloop\nendfacet\n"
+        for face in FACES
+    )
+    + "endsolid body\n",
+    "binary.STL": b"solid body".ljust(80)
+    + struct.pack("<I", len(FACES))
+    + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *(x for i in face for x in CORNERS[i]), 0) for face in FACES
+    ),
+}
+
+
+def with_mesh(folder: Path, name: str, text: str | bytes) -> None:
+    (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    parts = {"inertial": "", "material": "", "concave": "", "origin": "", "geometry": BOX}
+    hand = TOOL.format(**parts).partition("<collision>")
+    mesh = f'<collision><geometry><mesh filename="{name}"/></geometry></collision></link>'
+    text = hand[0] + mesh + hand[2].partition("</link>")[2]
+    (folder / "hand.urdf").write_text(text)
+
+
+@pytest.mark.bullet
+@pytest.mark.parametrize("name", MESHES)
+def test_each_kind_of_mesh_is_as_large_as_its_file_says(name: str, tmp_path: Path) -> None:
+    """PyBullet makes no shape at all of STL in text, and a smaller one where faces do not name all points."""
+    with_mesh(tmp_path, name, MESHES[name])
+    backend = BulletBackend(cell(tmp_path, tool="hand.urdf"), looks=False)
+    found = backend.box("arm", "tool_hand")
+    backend.close()
+    assert found is not None
+    assert np.allclose(found[0], 0.0, atol=0.01) and np.allclose(
+        found[1], (0.1, 0.2, 0.3), atol=0.01
+    )
+
+
+@pytest.mark.bullet
+def test_a_thing_of_stl_in_text_is_there(tmp_path: Path) -> None:
+    for name in ("text.stl", "binary.STL"):
+        with_mesh(tmp_path, name, MESHES[name])
+        d = Diagnostics()
+        thing = {"name": "body", "kind": "mesh", "file": name, "pose": {"x": 3.0}}
+        arm = {"model": "gp25", "base": {}, "home": [0.0, 0.0, 0.0, 0.0, -90.0, 0.0]}
+        found = load(
+            {"robots": {"arm": arm}, "scene": {"objects": [thing]}}, tmp_path, lambda *_: HERE, d
+        )
+        assert found is not None, [e.message for e in d]
+        backend = BulletBackend(found, looks=False)
+        (body,) = (s.id for s in backend._standing() if s.whole == "body")
+        low, high = backend._p.getAABB(body, physicsClientId=backend._client)
+        backend.close()
+        assert np.allclose(low, (3.0, 0.0, 0.0), atol=0.01)
+        assert np.allclose(high, (3.1, 0.2, 0.3), atol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "why"),
+    [
+        ("hand.dae", "<COLLADA/>", "it is no OBJ or STL file"),
+        ("hand.stl", "not a mesh", "it is not of the STL format"),
+        ("hand.stl", b"".ljust(80) + struct.pack("<I", 7) + b"short", "it is not of the STL format"),
+        ("hand.obj", OBJ, "it has no triangles"),
+        ("hand.obj", "v 0 0\nf 1 \\\n2 3\n", "line 2 is not of the OBJ format"),
+        ("gone.obj", None, "No such file or directory"),
+    ],
+)  # fmt: skip
+def test_a_mesh_that_cannot_be_read_is_refused(
+    name: str, text: str | bytes | None, why: str, tmp_path: Path
+) -> None:
+    with_mesh(tmp_path, name, text or "")
+    if text is None:
+        (tmp_path / name).unlink()
+    d = Diagnostics()
+    arm = {
+        "model": "gp25",
+        "tool": "hand.urdf",
+        "base": {},
+        "home": [0.0, 0.0, 0.0, 0.0, -90.0, 0.0],
+    }
+    assert load({"robots": {"arm": arm}}, tmp_path, lambda *_: HERE, d) is None
+    (found,) = d.errors
+    assert found.message == (
+        f"the collision mesh `{name}` of link `hand` cannot be read, so that it would touch nothing: {why}"
+    )
+    if text is None:
+        return
+    d = Diagnostics()
+    thing = {"name": "body", "kind": "mesh", "file": name}
+    del arm["tool"]
+    sections = {"robots": {"arm": arm}, "scene": {"objects": [thing]}}
+    assert load(sections, tmp_path, lambda *_: HERE, d) is None
+    assert any("an OBJ or STL file" in e.message for e in d.errors), [e.message for e in d]
