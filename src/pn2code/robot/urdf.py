@@ -425,7 +425,8 @@ def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda 
         if not material.get("name"):
             material.set("name", f"unnamed_{i}")
     for collision in root.iter("collision"):
-        collision.attrib.pop("concave", None)
+        if "concave" in collision.attrib:
+            del collision.attrib["concave"]
         for mesh in collision.iter("mesh"):
             mesh.set("filename", str(mesh_of(Path(mesh.get("filename", "")))))
     for axis in root.iter("axis"):
