@@ -12,7 +12,7 @@ from tools.adversary import times, wander
 from tools.adversary.wander import Pace
 from typer.testing import CliRunner
 
-from helpers import meeting_cell
+from helpers import belt_cell, meeting_cell
 from helpers.netbuilder import cpn
 from helpers.thorough import amount
 from helpers.timed_runs_cell import NET, write
@@ -76,6 +76,120 @@ def test_within_so_many_seconds(tmp_path: Path) -> None:
         assert said["answer"] == answer
     done = CliRunner().invoke(app, ["time", cell, "--within", "3.9"])
     assert "NO: each run comes to its end within 3.9 s: a run takes 4.001 s" in done.stdout
+
+
+TEN = """
+net ten
+  standard
+  colset COUNT = int with 0..10;
+  fun drill () = ();
+  fun press () = ();
+  var n : COUNT;
+  page Top
+    place f1
+    place d1
+    place f2
+    place d2
+    subst Supervisor = Sup (f1 -> f1, d1 -> d1, f2 -> f2, d2 -> d2)
+    subst Drill = Drill (f -> f1, d -> d1)
+    subst Press = Press (f -> f2, d -> d2)
+  page Sup
+    place f1 port out
+    place d1 port in
+    place f2 port out
+    place d2 port in
+    place Ready = ()
+    place Busy
+    place Other
+    place Finished
+    trans Start
+      in Ready : ()
+      out f1 : ()
+      out f2 : ()
+      out Busy : ()
+      out Other : ()
+    trans End
+      in Busy : ()
+      in d1 : ()
+      out Finished : ()
+    trans Pressed
+      in Other : ()
+      in d2 : ()
+  page Drill
+    place f port in
+    place d port out
+    place Waiting = ()
+    place Told : COUNT
+    trans Accept
+      in Waiting : ()
+      in f : ()
+      out Told : 0
+    trans Drill guard [n < 10] code action drill ()
+      in Told : n
+      out Told : n + 1
+    trans Report guard [n = 10]
+      in Told : n
+      out d : ()
+      out Waiting : ()
+  page Press
+    place f port in
+    place d port out
+    place Waiting = ()
+    place Told : COUNT
+    trans Accept
+      in Waiting : ()
+      in f : ()
+      out Told : 0
+    trans Press guard [n < 10] code action press ()
+      in Told : n
+      out Told : n + 1
+    trans Report guard [n = 10]
+      in Told : n
+      out d : ()
+      out Waiting : ()
+"""
+
+
+def test_milliseconds_add_up_and_are_no_proof_that_it_takes_longer(tmp_path: Path) -> None:
+    """The drill needs 10 s. What ends 0.9 ms later may end before it, ten times; so far that was a *no*."""
+    cell = write(tmp_path)
+    (cell / "cell.cpn").write_bytes(cpn(TEN))
+    toml = (cell / "cell.toml").read_text().replace("_s = 2.0", "_s = 1.0")
+    asks = """
+[[property]]
+name = "drilled"
+holds = "every fires(Sup'Start) is followed by fires(Sup'End) within 10.005 seconds"
+"""
+    toml = toml.partition("[sensors")[0].replace("_s = 3.0", "_s = 1.0009") + asks
+    (cell / "cell.toml").write_text(toml)
+    for seconds, answer, code in (("10.02", "yes", 0), ("10.005", "unknown", 3), ("9.99", "no", 1)):
+        (said,) = asked(str(cell), "--within", seconds, code=code)["within"]
+        assert said["answer"] == answer, said
+    assert asked(str(cell))["layouts"][0]["cycle"]["most_s"] == 10.010
+    done = CliRunner().invoke(app, ["verify", str(cell), "--durations", "--json"])
+    (said,) = (x for x in json.loads(done.stdout)["properties"] if x["name"] == "drilled")
+    assert said["answer"] == "inconclusive", said
+    assert said["why"] == "the longest wait is as long as that, to 10 milliseconds"
+
+
+@pytest.mark.bullet
+def test_a_belt_with_a_stop_leaves_both_bounds(tmp_path: Path) -> None:
+    """How far it runs is not followed: between nothing and all of its way."""
+    cell = belt_cell.belt_cell(tmp_path / "cell")
+    (layout,) = asked(str(cell), code=3)["layouts"]
+    (run,) = (c for c in layout["commands"] if "belt" in c["command"])
+    assert run["least_s"] == 0.0 and run["most_s"] > 4.0
+    cycle = layout["cycle"]
+    assert "how far a belt runs" in cycle["why"] and layout["open"] is None
+    took = ran(cell, tmp_path / "run")
+    assert 0.0 < cycle["at_least_s"] < took < cycle["at_most_s"]
+    fast = tmp_path / "fast"
+    belt_cell.belt_cell(fast, toml=belt_cell.TOML.replace("speed = 0.25", "speed = 2.0"))
+    (other,) = asked(str(fast), code=3)["layouts"]
+    assert other["cycle"]["at_least_s"] <= cycle["at_least_s"]
+    assert other["cycle"]["at_most_s"] < cycle["at_most_s"]
+    done = CliRunner().invoke(app, ["time", str(cell)])
+    assert "than its planned time (a belt with a stop may take none)." in done.stdout
 
 
 def test_an_answer_may_come_too_late(tmp_path: Path) -> None:

@@ -66,6 +66,19 @@ def test_runs_of_random_timers_keep_the_bounds(seed: int, tmp_path: Path) -> Non
     assert not list(waits.contradictions(measured[0], random, made))
 
 
+@pytest.mark.parametrize(
+    ("patience", "never"),
+    [(1, ["Drilled"]), (4, []), (7, ["Time Out", "Late"])],
+    ids=("too short", "sometimes over", "long enough"),
+)
+def test_what_a_timer_never_lets_occur(patience: int, never: list[str], tmp_path: Path) -> None:
+    """The drill answers after 2.3 to 5.3 s, which follows from what it is told and does."""
+    numbers = {**timer_cell.USUAL, "PATIENCE": patience}
+    cycle = times.cycle_of(timer_cell.write(tmp_path / "cell", numbers))
+    assert cycle is not None and not cycle.why
+    assert cycle.row()["never"] == [f"Top.Supervisor.{name}" for name in never]
+
+
 def test_a_script_waits_for_its_control_token_alone(tmp_path: Path) -> None:
     """What it notes with a later time stamp, where nobody reads, keeps it from nothing."""
     net = timer_cell.NET.replace(

@@ -23,7 +23,7 @@ import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen, record
-from pn2code.robot import urdf
+from pn2code.robot import collision_meshes, urdf
 from pn2code.robot.backend import (
     BackendName,
     Beside,
@@ -212,9 +212,11 @@ class BulletBackend:
                 )
             self._egl = plugin if plugin >= 0 else None
 
-    def _load_urdf(self, name: str, text: str, fixed: bool = True) -> int:
+    def _load_urdf(self, name: str, text: str, *, fixed: bool = True, looks: bool = True) -> int:
         path = Path(self._folder.name) / f"{name.replace('/', '_')}.urdf"
-        path.write_text(text, encoding="utf-8")
+        folder = Path(self._folder.name)
+        read = urdf.for_bullet(text, looks, lambda mesh: collision_meshes.for_bullet(mesh, folder))
+        path.write_text(read, encoding="utf-8")
         # Implicit cylinders: as hulls of 32 sides they would be up to 1 mm too thin.
         return int(
             self._p.loadURDF(
@@ -228,9 +230,7 @@ class BulletBackend:
     def _load_robot(self, robot: CellRobot, looks: bool) -> _Loaded:
         tree = robot.arm.urdf
         text = urdf.with_tool(tree, robot.arm.flange, robot.tool.urdf if robot.tool else None)
-        if not looks:
-            text = _without_looks(text)
-        body = self._load_urdf(robot.name, text)
+        body = self._load_urdf(robot.name, text, looks=looks)
         base = robot.base
         self._p.resetBasePositionAndOrientation(
             body,
@@ -276,7 +276,6 @@ class BulletBackend:
                     "</material></visual>"
                 )
         lines.append("</link></robot>")
-        # One element a line: all in one long line, PyBullet's reader reported broken attributes.
         return _Standing(body, self._load_urdf(body.name, "\n".join(lines)))
 
     # Backend
@@ -519,7 +518,7 @@ class BulletBackend:
         if isinstance(kind, PartKind):
             return self._load_body(body_of(replace(kind.shape, name=name)), looks).id
         text = urdf.as_one_link(kind.tool.urdf)
-        return self._load_urdf(name, text if looks else _without_looks(text))
+        return self._load_urdf(name, text, looks=looks)
 
     def _around(self, body: int) -> tuple[Array, Array]:
         low, high = self._p.getAABB(body, -1, physicsClientId=self._client)
@@ -837,12 +836,3 @@ def _mesh(path: Path, look: Look) -> str:
     return (
         f"{_origin(look.pose)}<geometry><mesh filename={name} scale={_quoted(scale)}/></geometry>"
     )
-
-
-def _without_looks(text: str) -> str:
-    root = etree.fromstring(text.encode())
-    for visual in list(root.iter("visual")):
-        above = visual.getparent()
-        if above is not None:
-            above.remove(visual)
-    return str(etree.tostring(root, encoding="unicode"))

@@ -59,15 +59,26 @@ def _obj(path: Path) -> tuple[Points, Triangles]:
     return np.array(points, float).reshape(-1, 3), found
 
 
+def is_binary_stl(path: Path) -> bool:
+    """Whether an STL file is binary: as long as the number of its triangles says."""
+    return _count(path.read_bytes()) is not None
+
+
+def _count(data: bytes) -> int | None:
+    if len(data) < _STL_HEAD:
+        return None
+    count: int = struct.unpack_from("<I", data, 80)[0]
+    return count if len(data) == _STL_HEAD + count * _STL_ROW else None
+
+
 def _stl(path: Path) -> tuple[Points, Triangles]:
     """Triangles of an STL file, binary or text."""
     data = path.read_bytes()
-    if len(data) >= _STL_HEAD:
-        count = struct.unpack_from("<I", data, 80)[0]
-        if len(data) == _STL_HEAD + count * _STL_ROW:
-            row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("more", "<u2")])
-            rows = np.frombuffer(data, row, count, _STL_HEAD)
-            return merged(rows["corners"].reshape(-1, 3).astype(float))
+    count = _count(data)
+    if count is not None:
+        row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("more", "<u2")])
+        rows = np.frombuffer(data, row, count, _STL_HEAD)
+        return merged(rows["corners"].reshape(-1, 3).astype(float))
     words = data.decode("utf-8", "replace").split()
     at = [i for i, w in enumerate(words) if w.lower() == "vertex"]
     try:

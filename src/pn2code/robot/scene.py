@@ -24,6 +24,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.carried import WithAxes, with_axes
+from pn2code.robot.collision_meshes import unread_meshes
 from pn2code.robot.devices import Around, read_devices, touched
 from pn2code.robot.external import read_axes
 from pn2code.robot.frames import Frames, read_frames
@@ -111,6 +112,15 @@ def load(
     if len(d.errors) != before:
         return None
     cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones, tools)
+    trees = [r.arm.urdf for r in robots]
+    trees += [t.urdf for t in (*(r.tool for r in robots), *(k.tool for k in tools.values())) if t]
+    for path, says in unread_meshes(trees):
+        d.error(
+            codes.ROBOT_URDF,
+            says,
+            Origin(str(path)),
+            hint="let it be a box, a cylinder, a sphere, a capsule, or an OBJ or STL file",
+        )
     for name in unread(cell) if zones else ():
         d.error(
             codes.ROBOT_VALUE,

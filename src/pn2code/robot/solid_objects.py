@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from pn2code.robot.collision_meshes import trouble
 from pn2code.robot.hulls import Hull
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Table
@@ -31,6 +32,8 @@ def read_solids(
         out.append(thing)
         if solid:
             expect_body(table, thing)
+        elif thing.mesh is not None and thing.mesh.is_file() and trouble(thing.mesh):
+            table.wrong("file", "an OBJ or STL file that can be read")
     return tuple(out)
 
 

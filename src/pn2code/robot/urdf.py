@@ -7,6 +7,7 @@ for PyBullet. Any robot's URDF in the usual form can be read, so that users brin
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -149,6 +150,8 @@ def _tree(path: Path, root: Any) -> Urdf:
     for name in links:
         if links.count(name) > 1:
             raise _BadError(f"link `{name}` is defined twice", root.sourceline)
+    for link in root.findall("link"):
+        _shapes(link)
     joints = tuple(_joint(e, links) for e in root.findall("joint"))
     children = [j.child for j in joints]
     for child in children:
@@ -199,6 +202,45 @@ def _numbers(element: Any, name: str, count: int, default: str) -> tuple[float, 
         line = 0 if element is None else element.sourceline
         raise _BadError(f"`{name}` is `{text}`, but {count} numbers are expected", line)
     return values
+
+
+def _shapes(link: Any) -> None:
+    """That the shapes of a link are shapes: one that is nowhere, or of no size, would touch nothing."""
+    for shape in (*link.findall("visual"), *link.findall("collision")):
+        origin, geometry = shape.find("origin"), shape.find("geometry")
+        _numbers(origin, "xyz", 3, "0 0 0")
+        _numbers(origin, "rpy", 3, "0 0 0")
+        solids = [] if geometry is None else geometry.findall("*")
+        if len(solids) != 1 or solids[0].tag not in _SIZES:
+            found = ", ".join(f"`{solid.tag}`" for solid in solids) or "nothing"
+            raise _BadError(
+                f"the `geometry` of a `{shape.tag}` of link `{link.get('name')}` is {found}, but one of "
+                f"{', '.join(_SIZES)} is expected",
+                shape.sourceline,
+            )
+        (solid,) = solids
+        if solid.tag == "mesh":
+            _attribute(solid, "filename")
+            sizes = tuple(map(abs, _numbers(solid, "scale", 3, "1 1 1")))
+        else:
+            sizes = tuple(
+                x for name, count in _SIZES[solid.tag] for x in _numbers(solid, name, count, "")
+            )
+        if min(sizes) <= 0.0:
+            raise _BadError(
+                f"a `{solid.tag}` of link `{link.get('name')}` has a size that is not above zero",
+                solid.sourceline,
+            )
+
+
+_SIZES: dict[str, tuple[tuple[str, int], ...]] = {
+    "box": (("size", 3),),
+    "cylinder": (("radius", 1), ("length", 1)),
+    "sphere": (("radius", 1),),
+    "capsule": (("radius", 1), ("length", 1)),
+    "mesh": (),
+}
+"""The shapes that there are, with the attributes that say how large they are."""
 
 
 def _mass(root: Any, joints: tuple[Joint, ...]) -> tuple[float, Array]:
@@ -361,6 +403,39 @@ def as_one_link(tree: Urdf) -> str:
             one.append(added)
     _absolute(out, tree.path.parent)
     return str(etree.tostring(out, encoding="unicode", pretty_print=True))
+
+
+def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda path: path) -> str:
+    """The same URDF as PyBullet reads it right: shapes where the links are, without its own ideas of masses.
+
+    PyBullet puts the *centre of gravity* of a base link where the link should be, refuses an `inertial` or a
+    material with something missing, lets what slides go by the length of its axis, takes meshes that are
+    `concave` for hollow, and cuts lines of more than 8191 bytes.
+
+    Args:
+        mesh_of: the file that it reads instead of one of a collision mesh.
+    """
+    root = etree.fromstring(text.encode())
+    for tag in ("inertial",) if looks else ("inertial", "visual"):
+        for element in list(root.iter(tag)):
+            above = element.getparent()
+            if above is not None:
+                above.remove(element)
+    for i, material in enumerate(root.iter("material")):
+        if not material.get("name"):
+            material.set("name", f"unnamed_{i}")
+    for collision in root.iter("collision"):
+        if "concave" in collision.attrib:
+            del collision.attrib["concave"]
+        for mesh in collision.iter("mesh"):
+            mesh.set("filename", str(mesh_of(Path(mesh.get("filename", "")))))
+    for axis in root.iter("axis"):
+        numbers = np.array(_numbers(axis, "xyz", 3, "1 0 0"))
+        length = float(np.linalg.norm(numbers))
+        if abs(length - 1.0) > 1e-12:
+            axis.set("xyz", " ".join(repr(float(x)) for x in numbers / length))
+    etree.indent(root)
+    return str(etree.tostring(root, encoding="unicode"))
 
 
 def _absolute(root: Any, folder: Path) -> None:

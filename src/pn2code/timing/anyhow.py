@@ -46,6 +46,7 @@ class Anyhow:
         self._stopped = stops(self.graph)
         self.faults: dict[tuple[int, int], str] = {}
         self._enabled: dict[int, frozenset[int]] = {}
+        self._shorter: dict[int, int] = {}
 
     def explore(self) -> None:
         """Goes through all of them."""
@@ -84,6 +85,10 @@ class Anyhow:
                         self.faults.setdefault(key, doing.fault)
                         continue
                     ns = doing.ns
+                    if doing.least < ns:
+                        self._shorter[element] = min(
+                            doing.least, self._shorter.get(element, doing.least)
+                        )
                     if arm is not None and doing.end is not None:
                         after = (*stands[:arm], doing.end, *stands[arm + 1 :])
             out.append((self._number((target, after)), ns, element))
@@ -115,6 +120,10 @@ class Anyhow:
         over = self.graph.over
         return frozenset(i for i, (state, _) in enumerate(self.nodes) if state in over)
 
+    def shortest(self, ns: int, mark: int) -> int:
+        """ns: what an arc of so many takes at least; a belt may be at its stop."""
+        return min(ns, self._shorter.get(mark, ns))
+
     def least(self) -> int | None:
         """The least that a cycle can take; None: there is no way to an end."""
         ends = self.ends()
@@ -123,7 +132,7 @@ class Anyhow:
         for owner in range(1, len(self.graph.partition.owners)):
 
             def own(ns: int, mark: int, owner: int = owner) -> int:
-                return ns if elements[mark].owner == owner else 0
+                return self.shortest(ns, mark) if elements[mark].owner == owner else 0
 
             found = shortest(self.successors, ends, own)
             if found is None:

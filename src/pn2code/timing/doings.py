@@ -45,7 +45,7 @@ class Doing:
     """All commands of a transition.
 
     Args:
-        ns: how long they take; FOREVER: they are not done to their end.
+        ns: how long they take, at most; FOREVER: they are not done to their end.
         end: where the arm stands afterwards; None: a device.
         parts: each of them; with a fault those before it.
         fault: why not all of them can be carried out.
@@ -56,6 +56,11 @@ class Doing:
     parts: tuple[Part, ...]
     fault: str = ""
 
+    @property
+    def least(self) -> int:
+        """ns: they may be over so soon, as belts come to their stop."""
+        return sum(p.ns if p.least is None else p.least for p in self.parts)
+
 
 class Doings:
     """Works them out, each once.
@@ -63,6 +68,7 @@ class Doings:
     Args:
         arms: the owners that have an arm, in the order of the cell's robots.
         why: why not all durations are known; "": they are.
+        stops: whether belts come to a stop, so that of some durations only the least and the most is known.
     """
 
     def __init__(self, graph: CellGraph, cell: RobotCell) -> None:
@@ -73,6 +79,7 @@ class Doings:
         self.homes = tuple(self.planner.home(r.name) for r in cell.moving)
         self.arm_of = {owner: i for i, owner in enumerate(self.arms)}
         self.why = ""
+        self.stops = False
         self._known: dict[tuple[int, int], Doing | None] = {}
         self._waits: dict[int, int] = {}
 
@@ -117,8 +124,7 @@ class Doings:
             if stand is not None:
                 # Without parts nothing comes to a stop.
                 stops = self.cell.parts and stopping(self.cell.robot(stand.robot), command)
-                if stops:
-                    self.why = self.why or "belt"
+                self.stops |= bool(stops)
                 leg = self.planner.leg(stand, command)
                 if leg.fault is not None or leg.path is None:
                     message = leg.fault.message if leg.fault is not None else ""

@@ -220,13 +220,17 @@ class _Look:
             max((ns for _, ns in owed if ns is not None), default=None),
             late,
             tuple(stops),
+            has_stops=self.doings.stops,
+            never=tuple(self._never()) if is_known else (),
         )
 
     def _endings(self) -> Iterator[Ending]:
         search = self.search
         is_known = not search.why
         # What was seen before a limit is all that there is before that time; of other reasons nothing is certain.
-        is_first = is_known or (search.why == "situations" and not self.doings.why)
+        is_first = is_known or (
+            search.why == "situations" and not (self.doings.why or self.doings.stops)
+        )
         several = len(search.endings) > 1
         for places, ending in search.endings.items():
             best = ending.best if is_first else None
@@ -238,6 +242,7 @@ class _Look:
                 None if worst is None else worst.ns,
                 self._run(best if is_known else None, f"fastest{short}"),
                 self._run(worst, f"slowest{short}"),
+                0 if worst is None else search.held_up(0, worst.way),
             )
 
     def _others(self, late: Sequence[str]) -> Iterator[str]:
@@ -258,6 +263,15 @@ class _Look:
             yield "a run may go on for ever, and never come to its end"
         if not search.ends and not search.why:
             yield "no run comes to its end"
+
+    def _never(self) -> Iterator[str]:
+        """What the net permits, but planned times do not: such as a timer that is over before the answer, or never."""
+        net, elements = self.graph.running.net, self.graph.elements
+        marks = {mark for arcs in self.search.successors for _, _, mark in arcs if mark >= 0}
+        occurs = {elements[mark].transition for mark in marks}
+        permitted = {e.transition for e in elements if not e.is_step and e.owner >= 0}
+        for transition in sorted(permitted - occurs):
+            yield net.transitions[transition].name
 
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
@@ -281,13 +295,16 @@ class _Look:
         Whoever waits meanwhile owes it for longer still, so only what is too long is known.
         """
         places = {p.name: p.index for p in self.graph.running.net.places}
-        elements, marked = self.graph.elements, self.graph.marked
+        elements, marked, shortest = self.graph.elements, self.graph.marked, self.anyhow.shortest
         for owner in self.graph.partition.owners:
             place = places.get(f"cell.{owner.name}.owes")
             if place is None:
                 continue
             own = [
-                [(to, ns if elements[mark].owner == owner.index else 0, mark) for to, ns, mark in x]
+                [
+                    (to, shortest(ns, mark) if elements[mark].owner == owner.index else 0, mark)
+                    for to, ns, mark in x
+                ]
                 for x in self.anyhow.successors
             ]
             owing = [i for i, (state, _) in enumerate(self.anyhow.nodes) if place in marked[state]]

@@ -9,6 +9,8 @@ from pn2code.timing.doings import NS
 
 MOST_COMMANDS = 25
 """Commands of a table that is not full: those that take longest."""
+MOST_NEVER = 8
+"""Transitions that are named because they never occur."""
 HEAD = ("transition", "command", "least", "most", "slowest from")
 
 
@@ -83,10 +85,15 @@ def _cycle(cycle: Cycle, timeout: float) -> Iterator[str]:
         yield f"  the cell can repeat {', '.join(f'`{t}`' for t in cycle.repeats)} as often as it likes"
     for other in cycle.others:
         yield f"  not counted: {other}"
+    if cycle.never:
+        shown = [f"`{name.removeprefix('Cell.')}`" for name in cycle.never[:MOST_NEVER]]
+        more = f" and {len(cycle.never) - len(shown)} more" if len(shown) < len(cycle.never) else ""
+        yield f"  occurs in none of these runs: {', '.join(shown)}{more}"
     if cycle.at_least is not None:
+        stops = " (a belt with a stop may take none)" if cycle.has_stops else ""
         yield (
             f"Whoever comes late: no cycle takes less than {seconds_down(cycle.at_least)} s, if no command takes less "
-            "than its planned time."
+            f"than its planned time{stops}."
         )
     if cycle.at_most is not None:
         yield (

@@ -123,7 +123,7 @@ class Search:
             if len(self.situations) > self.most:
                 self.why = self.why or "situations"
                 return
-        self.why = self.why or self.doings.why
+        self.why = self.why or self.doings.why or ("belt" if self.doings.stops else "")
         ways = Ways(self.successors, self.ends)
         self.cycle = ways.cycle
         for ending in self.endings.values():
@@ -148,6 +148,20 @@ class Search:
             out.append((node, mark))
             node = parent
         return out[::-1]
+
+    def held_up(self, node: int, way: Iterable[tuple[int, int]]) -> int:
+        """ns: how much later all of a way from a node is, as what should have ended before others ended after them.
+
+        Each of these is within `TIE`; of many of them the sum is not.
+        """
+        out = 0
+        for target, mark in way:
+            going = [ns for *_, ns in self.situations[node][2] if ns < FOREVER // 2]
+            arcs = [a for a in self.successors[node] if a[2] == mark and target in (a[0], -1)]
+            if going and arcs:
+                out += max(0, max(ns for _, ns, _ in arcs) - min(going))
+            node = target
+        return out
 
     def around(self) -> list[int]:
         """The elements of a repetition that takes time, from which an end can be reached."""

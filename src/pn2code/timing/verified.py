@@ -25,7 +25,7 @@ from pn2code.geometry.runs import write
 from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
-from pn2code.timing.answers import seconds_down, seconds_up
+from pn2code.timing.answers import near, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
@@ -179,10 +179,11 @@ class _Judge:
             if wait.why in _WHY or (wait.why == "never" and faults):
                 return open_(_WHY.get(wait.why) or f"a run may stop before it: {faults[0]}")
             return self._shown(a, one, wait, "no", None)
-        if wait.ns - TIE > limit:
-            return self._shown(a, one, wait, "no", wait.ns)
+        held_up = search.held_up(wait.way[0][0], wait.way[1:]) if wait.way else 0
+        if wait.ns - held_up - TIE > limit:
+            return self._shown(a, one, wait, "no", wait.ns - held_up)
         if wait.ns + TIE > limit:
-            return open_("the longest wait is as long as that, to a millisecond")
+            return open_(f"the longest wait is as long as that, to {near(held_up)}")
         stops = self.control.stops if self.control is not None else ""
         others = [stops] if stops else []
         others += [x for x in layout.cycle.others if "go on for ever" not in x]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from pathlib import Path
 from typing import Any
@@ -456,3 +457,26 @@ def test_most_of_the_reach_is_free_of_the_arm_itself(name: str) -> None:
     free = [monitor.check(float(i), {"r": x}).fault is None for i, x in enumerate(q)]
     backend.close()
     assert sum(free) > 0.6 * len(free)
+
+
+def test_where_flanges_come_is_as_the_manual_says(root: Path) -> None:
+    manual = (root / "docs/robots.md").read_text()
+    rows = {
+        "cobra_s600": "| `cobra_s600` | 0.163 to 0.600 from the middle, ",
+        "gantry_3000": "| `gantry_3000` | x 0 to 3, y -1 to 1 | 0.55 to 1.75 |",
+    }
+    for name, row in rows.items():
+        assert row in manual
+        robot = cell(name).robots[0]
+        arm, kinematics = robot.arm, robot.kinematics
+        ends = np.array([*itertools.product(*zip(arm.lower, arm.upper, strict=True))])
+        places = np.array([kinematics.forward(q)[:3, 3] for q in ends])
+        low, high = places.min(axis=0), places.max(axis=0)
+        if name == "gantry_3000":
+            assert np.allclose([low, high], [(0.0, -1.0, 0.55), (3.0, 1.0, 1.75)])
+            continue
+        assert np.allclose([low[2], high[2]], [0.177, 0.387])
+        assert np.degrees(arm.upper[0]) == pytest.approx(105.0)
+        bent = np.hypot(*places[:, :2].T)
+        straight = kinematics.forward(np.zeros(4))[0, 3]
+        assert (bent.min().round(3), round(float(straight), 3)) == (0.163, 0.6)

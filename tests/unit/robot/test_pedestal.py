@@ -52,10 +52,14 @@ def test_where_the_extent_is_not_known_it_is_the_widest(tmp_path: Path) -> None:
     text = (MODELS / "ur5e.urdf").read_text().replace("meshes/", f"{MODELS}/meshes/")
     shape = '<cylinder radius="0.0748" length="0.0945"/>'
     assert text.count(shape) == 1
+    (tmp_path / "base.stl").write_text(
+        "solid base\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid base\n"
+    )
     for other, side in (
         ('<mesh filename="base.stl"/>', 0.92),
         ('<sphere radius="0.1"/>', 0.40),
-        ('<box size="0.1 0.1"/>', 0.92),
+        ('<capsule radius="0.1" length="0.1"/>', 0.92),
     ):
         (tmp_path / "arm.urdf").write_text(text.replace(shape, other))
         assert width(cell("arm.urdf", 6, tmp_path)) == side

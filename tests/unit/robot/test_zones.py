@@ -54,17 +54,20 @@ SHUT = np.array([0.0, 0.02, 0.02])
 OPEN = np.array([0.9, 0.02, 0.02])
 
 
-@pytest.mark.parametrize("odd", ['<mesh filename="odd.dae"/>', '<sphere radius="wide"/>'])
+@pytest.mark.parametrize(
+    "odd", ['<mesh filename="flat.obj"/>', '<capsule radius="0.1" length="0.1"/>']
+)
 def test_what_has_no_shape_that_can_be_read_is_not_left_out_of_zones(
     odd: str, tmp_path: Path
 ) -> None:
     """Nobody would see how fast it is there."""
     text = (MODELS / "gp25.urdf").read_text(encoding="utf-8")
-    (tmp_path / "odd.dae").write_text("<COLLADA/>", encoding="utf-8")
+    flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    (tmp_path / "flat.obj").write_text(flat, encoding="utf-8")
     shape = f'<link name="flange"><collision><geometry>{odd}</geometry></collision></link>'
     assert '<link name="flange"/>' in text
     arm = text.replace('<link name="flange"/>', shape)
-    arm = arm.replace('filename="', f'filename="{MODELS}/').replace(f"{MODELS}/odd", "odd")
+    arm = arm.replace('filename="', f'filename="{MODELS}/').replace(f"{MODELS}/flat", "flat")
     (tmp_path / "arm.urdf").write_text(arm, encoding="utf-8")
     data: dict[str, Any] = tomllib.loads(TOML + ZONES)
     data["robots"]["arm"]["model"] = "arm.urdf"
