@@ -4,29 +4,30 @@
  * What the supervisor exchanges with whom, through which files; see runtime/include/pn/pn_cell.h.
  *
  * Checked in all 3,345 states of the cell as it runs (docs/execution.md):
- * finite-response: yes; the supervisor always comes to rest
- * bounded-response: yes; at most 6 firings in one cycle
- * confluence: yes; the order of firing does not matter
- * non-blocking: yes; a token in `Finished` or `Failed` is reached from each of the 3,345 states of the cell, however slow its programs
- * are
- * channels: yes; at most 1 message in each of 8 channels
- * messages: yes; each of the 14 values that come into channels can be written into its file and read back
- * memory: yes; no list or string needs memory while the supervisor runs
- * reach: yes; each of the 2 poses that arms are told can be reached
- * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
+ *   finite-response: yes; the supervisor always comes to rest
+ *   bounded-response: yes; at most 6 firings in one cycle
+ *   confluence: yes; the order of firing does not matter
+ *   non-blocking: yes; a token in `Finished` or `Failed` is reached from each of the 3,345 states of the cell, however
+ *     slow its programs are
+ *   channels: yes; at most 1 message in each of 8 channels
+ *   messages: yes; each of the 14 values that come into channels can be written into its file and read back
+ *   memory: yes; no list or string needs memory while the supervisor runs
+ *   reach: yes; each of the 2 poses that arms are told can be reached
+ *   ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
- * a measurement gives the result of `measure` in the net
- * `coordenadas` begins with the token of `coordenadas.robcad`:
- * (5,{x=5750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0},{x=6750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0})
- * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
- * measurements take is not known here, `pn2code time` measures it)
- * each possible value of a sensor occurs from time to time
- * arms get to where they are told to go, and nothing is in their way (`pn2code check --geometry` looks at limits and singularities on
- * the way, increments and collisions, a run at those on its own ways)
+ *   a measurement gives the result of `measure` in the net
+ *   `coordenadas` begins with the token of `coordenadas.robcad`:
+ *     (5,{x=5750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0},{x=6750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0})
+ *   nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long
+ *     moves and measurements take is not known here, `pn2code time` measures it)
+ *   each possible value of a sensor occurs from time to time
+ *   arms get to where they are told to go, and nothing is in their way (`pn2code check --geometry` looks at limits and
+ *     singularities on the way, increments and collisions, a run at those on its own ways)
  *
  * Memory: all of it is static. The arena, for lists, strings and the moves of a firing, has 3,904 bytes,
  * proven to be enough for the initial marking, the moves of one firing, and a token that arrives.
- * The marking, the arena, the host's buffers and the deepest stack are the program's RAM; `make footprint` adds them up.
+ * The marking, the arena, the host's buffers and the deepest stack are the program's RAM; `make footprint` adds them
+ * up.
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"

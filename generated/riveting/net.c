@@ -9,21 +9,21 @@
  *   a channel holds one message: a second one stops the supervisor (docs/protocol.md, I3)
  *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
  *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 1 + offset +
- *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift +
- *   ready + riveted + return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing + Cell.Supervisor.Install.Rivet.Retract.there 1 +
- *   Cell.Supervisor.Install.Return.there 1 + Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
+ *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 1 +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 +
+ *   shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing + Cell.Supervisor.Install.Rivet.Retract.there
+ *   1 + Cell.Supervisor.Install.Return.there 1 + Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
  *     Cell.flag1_interno: 1, Cell.flag1_externo: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.referencia1: 1, Cell.medida1: 1
- *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned + approached + verified +
- *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move
- *   both.there 2 + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
- *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened
- *   + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting +
- *   Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded +
- *   Cell.Robot2.Done <= 1
+ *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned + approached + verified
+ *   + corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.there 2 + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done
+ *   + Cell.Supervisor.Correct.Move both.there 2 + shift + ready + riveted + return +
+ *   Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting + Cell.Supervisor.Install.Rivet.Retract.there
+ *   2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded + Cell.Robot2.Done <= 1
  *     Cell.flag2_interno: 1, Cell.flag2_externo: 1
  *   never marked
  *     Cell.referencia2: 0, Cell.medida2: 0
@@ -33,24 +33,25 @@
  *     Cell.Supervisor.planned: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.approached: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam <=
- *   1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   <= 1
  *     Cell.Supervisor.verified: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.corrected: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.ended: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended + Finished +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended + Finished
+ *   + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Finished: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
- *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
- *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving
+ *   1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
+ *   drilling + inserting + releasing <= 1
  *     Cell.Supervisor.result: 1, Cell.Supervisor.Install.shift: 1, Cell.Supervisor.Install.ready: 1,
  *     Cell.Supervisor.Install.Shift.moving 1: 1, Cell.Supervisor.Install.Shift.there 1: 1,
  *     Cell.Supervisor.Install.Rivet.advance: 1, Cell.Supervisor.Install.Rivet.contact: 1,
@@ -59,8 +60,8 @@
  *     Cell.Supervisor.Install.Rivet.Fasten.drilling: 1, Cell.Supervisor.Install.Rivet.Fasten.inserting: 1,
  *     Cell.Supervisor.Install.Rivet.Fasten.releasing: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended + Failed +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Failed: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order <= 1
  *     Cell.Supervisor.Approach.order: 1
@@ -69,54 +70,54 @@
  *     Cell.Supervisor.Approach.done: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.Approach.seam: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 <=
- *   1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1
+ *   <= 1
  *     Cell.Supervisor.Approach.Move both.moving 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 +
- *   Cell.Supervisor.Approach.Move both.there 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1
+ *   + Cell.Supervisor.Approach.Move both.there 1 <= 1
  *     Cell.Supervisor.Approach.Move both.there 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 <=
- *   1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2
+ *   <= 1
  *     Cell.Supervisor.Approach.Move both.moving 2: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 +
- *   Cell.Supervisor.Approach.Move both.there 2 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2
+ *   + Cell.Supervisor.Approach.Move both.there 2 <= 1
  *     Cell.Supervisor.Approach.Move both.there 2: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked <= 1
  *     Cell.Supervisor.Verify.first asked: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked + last asked <= 1
  *     Cell.Supervisor.Verify.last asked: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset <= 1
  *     Cell.Supervisor.Correct.offset: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order <= 1
  *     Cell.Supervisor.Correct.order: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
- *   Cell.Supervisor.Correct.Move both.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving
+ *   1 + Cell.Supervisor.Correct.Move both.there 1 <= 1
  *     Cell.Supervisor.Correct.done: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   Cell.Supervisor.Correct.seam <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.Correct.seam: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 + Cell.Supervisor.Correct.Move
- *   both.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 +
+ *   Cell.Supervisor.Correct.Move both.there 1 <= 1
  *     Cell.Supervisor.Correct.Move both.there 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 2: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
- *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 + Cell.Supervisor.Correct.Move
- *   both.there 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 +
+ *   Cell.Supervisor.Correct.Move both.there 2 <= 1
  *     Cell.Supervisor.Correct.Move both.there 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
  *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
- *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
- *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing
+ *   + drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
  *   Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
  *     Cell.Supervisor.Install.riveted: 1, Cell.Supervisor.Install.Rivet.retract: 1,
  *     Cell.Supervisor.Install.Rivet.Retract.moving 1: 1, Cell.Supervisor.Install.Rivet.Retract.there 1: 1
@@ -127,53 +128,55 @@
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + work <= 1
  *     Cell.Supervisor.Install.work: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 2
- *   + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
- *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving
+ *   2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
+ *   drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.moving 2: 1, Cell.Supervisor.Install.Shift.there 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
- *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
- *   2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving
+ *   1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing +
+ *   drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Rivet.Advance.moving 2: 1, Cell.Supervisor.Install.Rivet.Advance.there 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
  *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
- *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
- *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing
+ *   + drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 +
  *   Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.moving 2: 1, Cell.Supervisor.Install.Rivet.Retract.there 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 <= 1
  *     Cell.Supervisor.Install.Return.moving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.Install.Return.there 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2
- *   <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 2 <= 1
  *     Cell.Supervisor.Install.Return.moving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2
- *   + Cell.Supervisor.Install.Return.there 2 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 <= 1
  *     Cell.Supervisor.Install.Return.there 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
  *     Cell.Supervisor.Home.leaving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Home.home 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
  *     Cell.Supervisor.Home.leaving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
- *   + Cell.Supervisor.Install.Return.there 1 + leaving 2 + home 2 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 2 + home 2 <= 1
  *     Cell.Supervisor.Home.home 2: 1
  *   invariant Cell.Robot1.Waiting + Cell.Robot1.Commanded + Cell.Robot1.Done = 1
  *     Cell.Robot1.Waiting: 1, Cell.Robot1.Commanded: 1, Cell.Robot1.Done: 1

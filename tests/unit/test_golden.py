@@ -75,3 +75,20 @@ def test_every_block_is_inside_its_file(files: tuple[OutputFile, ...]) -> None:
             if block.kind != "page":
                 assert short in text or block.origin.element_id in text, (file.path, block)
     assert blocks > 200
+
+
+def test_heads_are_read_in_120_columns(files: tuple[OutputFile, ...]) -> None:
+    """What was checked and assumed stands below what it belongs to, also where a line is broken."""
+    by_path = {f.path: f.text.splitlines() for f in files}
+    remarks = [
+        line
+        for name in ("net.c", "cell_config.c")
+        for line in by_path[name]
+        if line.startswith(" *")
+    ]
+    assert [line for line in remarks if len(line) > 120] == []
+    head = by_path["cell_config.c"]
+    assumed = head[head.index(" * Assumed:") + 1 :]
+    assumed = assumed[: assumed.index(" *")]
+    assert assumed
+    assert all(line.startswith(" *   ") for line in assumed)

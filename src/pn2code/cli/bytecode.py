@@ -1,11 +1,12 @@
-"""Compiled modules of pn2code, kept where Python itself may not keep them.
+"""Compiled modules, kept where Python itself may not keep them.
 
 Python keeps compiled modules beside their sources. Where it must not (`PYTHONDONTWRITEBYTECODE`) or cannot (sources
 of somebody else), each start of a command would compile a hundred modules again, which is half of the time of
 checking a typical net. Then they are kept in the user's own cache folder instead, by Python's own rules: those of a
 source that has changed are compiled anew.
 
-This concerns pn2code's modules only; what Python does with others stays as it is set.
+This concerns pn2code's modules, and those of its libraries that were installed without compiled ones beside them
+(`pip install --no-compile`); installed ones are used where they are.
 """
 
 from __future__ import annotations
@@ -42,12 +43,18 @@ class _Finder:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if not name.startswith("pn2code."):
-            return None
         spec = PathFinder.find_spec(name, path, target)
-        if spec is not None and type(spec.loader) is SourceFileLoader:
+        if (
+            spec is not None
+            and type(spec.loader) is SourceFileLoader
+            and (name.startswith("pn2code.") or not _is_compiled(spec))
+        ):
             spec.loader = _Loader(name, spec.loader.path, self._folder)
         return spec
+
+
+def _is_compiled(spec: ModuleSpec) -> bool:
+    return spec.cached is not None and os.path.exists(spec.cached)  # noqa: PTH110 - for each module
 
 
 class _Loader(SourceFileLoader):

@@ -7,7 +7,7 @@ from textwrap import wrap
 
 from pn2code.ir import nodes as ir
 
-_WIDTH = 118
+_WIDTH = 115
 
 
 def proofs(places: Sequence[ir.Place]) -> Iterator[dict[str, list[str]]]:

@@ -27,6 +27,11 @@ def c_comment(text: str) -> str:
     return line
 
 
+def c_comment_line(text: str) -> str:
+    """The same for a line that begins with blanks, which stay."""
+    return " " * (len(text) - len(text.lstrip(" "))) + c_comment(text)
+
+
 def _in_string(byte: int) -> str:
     if byte in b'"?\\':
         return f"\\{chr(byte)}"  # `?`: no trigraphs
@@ -83,7 +88,7 @@ def environment() -> Environment:
         autoescape=False,
         bytecode_cache=_Cache(str(folder), "%s.template") if folder else None,
     )
-    for function in (c_comment, c_string, c_float, c_int, c_bool):
+    for function in (c_comment, c_comment_line, c_string, c_float, c_int, c_bool):
         env.filters[function.__name__] = function
     return env
 

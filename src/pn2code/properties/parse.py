@@ -7,11 +7,7 @@ parse(SourceText("always { size (Mark.Top'P 1) <= 3 }", Origin("command line", 1
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, cast
-
-from lark import Lark, Token, Transformer, v_args
-from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
-from lark.tree import Meta
+from typing import TYPE_CHECKING, Any, cast
 
 from pn2code.base.parser_cache import kept_lark
 from pn2code.diagnostics import Diagnostics, SourceText, Span
@@ -21,6 +17,11 @@ from pn2code.properties import codes
 from pn2code.properties import tree as t
 from pn2code.properties.chunks import blanked, part
 from pn2code.properties.grammar import GRAMMAR, KEYWORDS
+from pn2code.properties.loop import OPTIONS, Node, Piece, parsed
+
+if TYPE_CHECKING:
+    from lark import Lark
+    from lark.exceptions import UnexpectedToken
 
 MAX_LENGTH = 100_000
 """Characters of a property."""
@@ -63,33 +64,19 @@ def _read(source: SourceText, start: str, d: Diagnostics) -> Any:
         )
         return None
     before = len(d.errors)
-    try:
-        tree = _parser().parse(text, start=start)
-        if _too_deep(tree, source, d):
-            return None
-        found = _Builder(source, d).transform(tree)
-    except UnexpectedCharacters as problem:
-        at = cast(int, problem.pos_in_stream)
-        _unexpected_character(text, at, source, d)
+    tree = parsed(text, start)
+    if tree is None:
+        _say_why(text, start, source, d)
         return None
-    except UnexpectedToken as problem:
-        _unexpected_token(problem, source, d)
+    if _too_deep(tree, source, d):
         return None
-    except VisitError as problem:  # lark wraps what the builder raises; that is a bug of ours
-        raise problem.orig_exc from None
+    found = _Builder(source, d).value(tree)
     return found if len(d.errors) == before else None
 
 
 @cache
 def _parser() -> Lark:
-    return kept_lark(
-        "property",
-        GRAMMAR,
-        start=["start", "fair"],
-        lexer="basic",
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
+    return kept_lark("property", GRAMMAR, **OPTIONS)
 
 
 # --- messages ----------------------------------------------------------------------------------
@@ -109,6 +96,21 @@ _FOREIGN = {
     "GF": "write `G F`", "FG": "write `F G`", "next": "write `X`", "eventually": "write `F`", "globally": "write `G`",
     "until": "write `U`", "Mark": "CPN ML stands in braces: `{ .. }`", "size": "CPN ML stands in braces: `{ .. }`",
 }  # fmt: skip
+
+
+def _say_why(text: str, start: str, source: SourceText, d: Diagnostics) -> None:
+    """Why a text is no property, as lark finds it."""
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
+    try:
+        _parser().parse(text, start=start)
+    except UnexpectedCharacters as problem:
+        at = cast(int, problem.pos_in_stream)
+        _unexpected_character(text, at, source, d)
+    except UnexpectedToken as problem:
+        _unexpected_token(problem, source, d)
+    else:
+        raise AssertionError("lark reads what its tables refuse")
 
 
 def _expected(terminals: set[str]) -> str:
@@ -189,14 +191,14 @@ def _unexpected_character(text: str, at: int, source: SourceText, d: Diagnostics
     d.error(codes.SYNTAX, f"`{shown}` cannot be used here", source.span(at, at + 1), hint=hint)
 
 
-def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:
+def _too_deep(tree: Node, source: SourceText, d: Diagnostics) -> bool:
     stack: list[tuple[Any, int]] = [(tree, 0)]
     while stack:
         node, depth = stack.pop()
-        if isinstance(node, Token):
+        if isinstance(node, Piece):
             continue
         if depth > MAX_DEPTH:
-            start = node.meta.start_pos
+            start = node.start_pos
             d.error(
                 codes.SYNTAX,
                 "the property is nested too deeply",
@@ -211,23 +213,26 @@ def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:
 # --- building the tree -------------------------------------------------------------------------
 
 
-@v_args(meta=True)
-class _Builder(Transformer[Token, Any]):
-    """Lark's tree -> ours."""
+class _Builder:
+    """The tree of the text -> that of the property. A method gets the node, and what was made of its parts."""
 
     def __init__(self, source: SourceText, d: Diagnostics) -> None:
-        super().__init__()
         self._source = source
         self._d = d
 
-    def _span(self, meta: Meta) -> Span:
-        return self._source.span(meta.start_pos, meta.end_pos)
+    def value(self, node: Node) -> Any:
+        """What a node means."""
+        parts = [self.value(c) if isinstance(c, Node) else c for c in node.children]
+        return getattr(self, node.name)(node, parts)
 
-    def _digits(self, token: Token) -> str:
+    def _span(self, node: Node) -> Span:
+        return self._source.span(node.start_pos, node.end_pos)
+
+    def _digits(self, token: Piece) -> str:
         """A number as it is written, or (reported) 0."""
         if len(token.partition(".")[0]) <= MOST_DIGITS:
             return str(token)
-        start = token.start_pos or 0
+        start = token.start_pos
         self._d.error(
             codes.SYNTAX,
             f"`{_short(token)}` is too large",
@@ -236,36 +241,36 @@ class _Builder(Transformer[Token, Any]):
         )
         return "0"
 
-    def _number(self, token: Token) -> int:
+    def _number(self, token: Piece) -> int:
         return int(self._digits(token))
 
     # kinds
 
-    def deadlock(self, _: Meta, c: list[Any]) -> t.Property:
+    def deadlock(self, _: Node, c: list[Any]) -> t.Property:
         return t.DeadlockFree(c[0] if c else None)
 
-    def upper(self, _: Meta, c: list[Any]) -> t.Property:
+    def upper(self, _: Node, c: list[Any]) -> t.Property:
         return t.Bound(c[0], None, self._number(c[1]))
 
-    def lower(self, _: Meta, c: list[Any]) -> t.Property:
+    def lower(self, _: Node, c: list[Any]) -> t.Property:
         return t.Bound(c[1], self._number(c[0]), None)
 
-    def both(self, _: Meta, c: list[Any]) -> t.Property:
+    def both(self, _: Node, c: list[Any]) -> t.Property:
         return t.Bound(c[1], self._number(c[0]), self._number(c[2]))
 
-    def always(self, _: Meta, c: list[Any]) -> t.Property:
+    def always(self, _: Node, c: list[Any]) -> t.Property:
         return t.Marking("always", c[0])
 
-    def never(self, _: Meta, c: list[Any]) -> t.Property:
+    def never(self, _: Node, c: list[Any]) -> t.Property:
         return t.Marking("never", c[0])
 
-    def reachable(self, _: Meta, c: list[Any]) -> t.Property:
+    def reachable(self, _: Node, c: list[Any]) -> t.Property:
         return t.Marking("reachable", c[0])
 
-    def mutex(self, _: Meta, c: list[Any]) -> t.Property:
+    def mutex(self, _: Node, c: list[Any]) -> t.Property:
         return t.Mutex(tuple(t.Marked(x, x.span) if isinstance(x, t.Name) else x for x in c))
 
-    def response(self, _: Meta, c: list[Any]) -> t.Property:
+    def response(self, _: Node, c: list[Any]) -> t.Property:
         made = t.Response(c[0], c[1])
         if len(c) == 2:
             return made
@@ -276,37 +281,37 @@ class _Builder(Transformer[Token, Any]):
             return t.Response(c[0], c[1], time=str(value))
         return t.Response(c[0], c[1], fair=value)
 
-    def within_firings(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+    def within_firings(self, _: Node, c: list[Any]) -> tuple[str, Any]:
         return "firings", self._digits(c[0])
 
-    def within_time(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+    def within_time(self, _: Node, c: list[Any]) -> tuple[str, Any]:
         return "time", self._digits(c[0])
 
-    def assuming(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+    def assuming(self, _: Node, c: list[Any]) -> tuple[str, Any]:
         return "assuming", tuple(c)
 
-    def fair(self, _: Meta, c: list[Any]) -> t.Fair:
+    def fair(self, _: Node, c: list[Any]) -> t.Fair:
         return t.Fair(c[0] != "weak", c[-1] if isinstance(c[-1], t.Name) else None)
 
-    def ctl(self, _: Meta, c: list[Any]) -> t.Property:
+    def ctl(self, _: Node, c: list[Any]) -> t.Property:
         return t.Branching(c[0])
 
-    def ltl(self, _: Meta, c: list[Any]) -> t.Property:
+    def ltl(self, _: Node, c: list[Any]) -> t.Property:
         return t.Linear(c[0], c[1][1] if len(c) > 1 else ())
 
     # formulas
 
-    def iff(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation("iff", tuple(c), None, self._span(meta))
+    def iff(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation("iff", tuple(c), None, self._span(node))
 
-    def implies(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation("implies", tuple(c), None, self._span(meta))
+    def implies(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation("implies", tuple(c), None, self._span(node))
 
-    def disjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return self._joined("or", c, self._span(meta))
+    def disjunction(self, node: Node, c: list[Any]) -> t.Formula:
+        return self._joined("or", c, self._span(node))
 
-    def conjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return self._joined("and", c, self._span(meta))
+    def conjunction(self, node: Node, c: list[Any]) -> t.Formula:
+        return self._joined("and", c, self._span(node))
 
     def _joined(self, operator: str, parts: list[t.Formula], span: Span) -> t.Formula:
         """As a balanced tree: hundreds of parts are no problem for those who recurse over it."""
@@ -319,70 +324,70 @@ class _Builder(Transformer[Token, Any]):
         )
         return t.Operation(operator, halves, None, span)
 
-    def until(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation(str(c[1]), (c[0], c[2]), None, self._span(meta))
+    def until(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[1]), (c[0], c[2]), None, self._span(node))
 
-    def negation(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation("not", tuple(c), None, self._span(meta))
+    def negation(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation("not", tuple(c), None, self._span(node))
 
-    def temporal(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation(str(c[0]), (c[1],), None, self._span(meta))
+    def temporal(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[0]), (c[1],), None, self._span(node))
 
-    def step(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation(str(c[0]), (c[2],), c[1], self._span(meta))
+    def step(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[0]), (c[2],), c[1], self._span(node))
 
-    def quantified(self, meta: Meta, c: list[Any]) -> t.Formula:
+    def quantified(self, node: Node, c: list[Any]) -> t.Formula:
         quantifier, inner = c
         if isinstance(inner, t.Operation) and inner.operator in ("U", "R", "W"):
-            return t.Operation(f"{quantifier}{inner.operator}", inner.parts, None, self._span(meta))
+            return t.Operation(f"{quantifier}{inner.operator}", inner.parts, None, self._span(node))
         self._d.error(
             codes.SYNTAX,
             f"`U` (or `W`, `R`) is expected between the brackets of `{quantifier}[ .. ]`",
-            self._span(meta),
+            self._span(node),
             hint=f"write `{quantifier}[p U q]`, or `{quantifier}G p`, `{quantifier}F p`, `{quantifier}X p`",
         )
-        return t.Word("true", self._span(meta))
+        return t.Word("true", self._span(node))
 
-    def word(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Word(str(c[0]), self._span(meta))
+    def word(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Word(str(c[0]), self._span(node))
 
-    def enabled(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Enabled(c[0], self._span(meta))
+    def enabled(self, node: Node, c: list[Any]) -> t.Formula:
+        return t.Enabled(c[0], self._span(node))
 
-    def fires(self, meta: Meta, c: list[Any]) -> t.Formula:
+    def fires(self, node: Node, c: list[Any]) -> t.Formula:
         condition = self._ml(c[1]) if len(c) > 1 else None
-        return t.Fires(c[0], condition, self._span(meta))
+        return t.Fires(c[0], condition, self._span(node))
 
-    def comparison(self, meta: Meta, c: list[Any]) -> t.Formula:
+    def comparison(self, node: Node, c: list[Any]) -> t.Formula:
         operator = str(c[1])
-        return self._compare("=" if operator == "==" else operator, c[0], c[2], meta)
+        return self._compare("=" if operator == "==" else operator, c[0], c[2], node)
 
-    def at_most(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return self._compare("<=", c[0], c[1], meta)
+    def at_most(self, node: Node, c: list[Any]) -> t.Formula:
+        return self._compare("<=", c[0], c[1], node)
 
-    def less(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return self._compare("<", c[0], c[1], meta)
+    def less(self, node: Node, c: list[Any]) -> t.Formula:
+        return self._compare("<", c[0], c[1], node)
 
-    def more(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return self._compare(">", c[0], c[1], meta)
+    def more(self, node: Node, c: list[Any]) -> t.Formula:
+        return self._compare(">", c[0], c[1], node)
 
-    def _compare(self, operator: str, left: Any, right: Any, meta: Meta) -> t.Formula:
-        return t.Tokens(operator, left, right, self._span(meta))
+    def _compare(self, operator: str, left: Any, right: Any, node: Node) -> t.Formula:
+        return t.Tokens(operator, left, right, self._span(node))
 
-    def operand(self, _: Meta, c: list[Any]) -> int | tuple[t.Name, ...]:
+    def operand(self, _: Node, c: list[Any]) -> int | tuple[t.Name, ...]:
         return tuple(c) if isinstance(c[0], t.Name) else self._number(c[0])
 
-    def ml(self, _: Meta, c: list[Any]) -> t.Formula:
+    def ml(self, _: Node, c: list[Any]) -> t.Formula:
         return self._ml(c[0])
 
-    def _ml(self, token: Token) -> t.Ml:
-        start = token.start_pos or 0
+    def _ml(self, token: Piece) -> t.Ml:
+        start = token.start_pos
         end = start + len(token)
         return t.Ml(part(self._source, start + 1, end - 1), self._source.span(start, end))
 
-    def name(self, meta: Meta, c: list[Any]) -> t.Name:
+    def name(self, node: Node, c: list[Any]) -> t.Name:
         token = c[0]
-        if token.type == "STRING":
-            return t.Name(str(token)[1:-1], None, True, self._span(meta))
+        if token.kind == "STRING":
+            return t.Name(str(token)[1:-1], None, True, self._span(node))
         number = self._number(c[1]) if len(c) > 1 else None
-        return t.Name(str(token), number, False, self._span(meta))
+        return t.Name(str(token), number, False, self._span(node))

@@ -62,12 +62,14 @@ def look_in_space(
         The files with models and shapes that were looked at.
     """
     files: frozenset[Path] = frozenset()
+    cells: dict[str, RobotCell] = {}
     for layout in config.layouts or {"": ""}:
         chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         assert chosen is not None, "the layouts have been read before"
         cell = scene.load(chosen.geometry, chosen.folder, chosen.locator.origin, d)
         if cell is None:
             return files
+        cells[layout] = cell
         files |= files_of(cell)
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
@@ -76,8 +78,8 @@ def look_in_space(
         for ir in programs:
             _kind_of_arm(cell, ir, where, d)
             _speeds(cell, ir, where, d)
-    arms = Arms.of(config, d, partial=False)
-    if arms is not None:
+    arms = Arms(cells)
+    if arms.robots:
         for ir in programs:
             _reach(arms, ir, d)
             _arcs(ir, d)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import os
+import py_compile
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+import pn2code
+
+SOURCES = Path(pn2code.__file__).parents[1]
 
 
 def version(cache: Path, **environment: str) -> str:
@@ -49,3 +54,33 @@ def test_python_keeps_them_itself_where_it_may(tmp_path: Path, root: Path) -> No
         pytest.skip("the sources cannot be written to")
     assert version(tmp_path)
     assert not modules(tmp_path)
+
+
+def import_library(cache: Path, **environment: str) -> None:
+    """Imports a library of one module, beside the cache, as a verb does."""
+    library = cache / "library.py"
+    library.write_text("answer = 42\n")
+    subprocess.run(
+        [sys.executable, "-c", "import pn2code.cli, library"],
+        env={
+            **os.environ,
+            "XDG_CACHE_HOME": str(cache),
+            "PYTHONPATH": f"{cache}{os.pathsep}{SOURCES}",
+            **environment,
+        },
+        check=True,
+    )
+
+
+def test_libraries_that_nobody_has_compiled(tmp_path: Path) -> None:
+    """`pip install --no-compile` of NumPy: compiling it took longer than checking a cell."""
+    import_library(tmp_path, PYTHONDONTWRITEBYTECODE="1")
+    assert list((tmp_path / "pn2code" / "modules").rglob("library*.pyc"))
+    assert not (tmp_path / "__pycache__").exists()
+
+
+def test_compiled_libraries_are_taken_where_they_are(tmp_path: Path) -> None:
+    (tmp_path / "library.py").write_text("answer = 42\n")
+    py_compile.compile(str(tmp_path / "library.py"))
+    import_library(tmp_path, PYTHONDONTWRITEBYTECODE="1")
+    assert not list((tmp_path / "pn2code" / "modules").rglob("library*.pyc"))

@@ -11,6 +11,7 @@
  * said in src/pn2code/verify/exploring/counts.py, which writes the table.
  */
 #include "explore_counts.h"
+#include "explore_reduce.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

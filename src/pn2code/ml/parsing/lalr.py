@@ -8,16 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import chain
-from typing import Any
+from typing import Any, Protocol
 
-from pn2code.ml.parsing.lexer import Lexeme
-from pn2code.ml.parsing.tables import Rule, Tables
+from pn2code.ml.parsing.tables import Automaton, Rule, Tables
 
 _END = "$END"
-_NO_TOKEN: tuple[Lexeme | None, ...] = (None,)
+_NO_TOKEN: tuple[None] = (None,)
 
 Children = list[Any]
 Callback = Callable[[Children], Any]
+
+
+class Token(Protocol):
+    """What the loop has to know of a token."""
+
+    @property
+    def kind(self) -> str:
+        """Its terminal."""
 
 
 class SyntaxProblem(Exception):  # noqa: N818  (reported by the caller)
@@ -28,7 +35,7 @@ class SyntaxProblem(Exception):  # noqa: N818  (reported by the caller)
         accepts: kinds of tokens that could stand there; `$END` for the end.
     """
 
-    def __init__(self, token: Lexeme | None, accepts: frozenset[str]) -> None:
+    def __init__(self, token: Any, accepts: frozenset[str]) -> None:
         super().__init__()
         self.token = token
         self.accepts = accepts
@@ -38,16 +45,25 @@ class Loop:
     """Parses with tables.
 
     Args:
-        builder: has a method for each rule of the grammar, which gets the list of its parts.
+        automaton: has `rows`, `starts` and `ends`.
+        rules: of each rule its size, what makes its value of the values of its parts (None: the only part itself), and
+            the symbol on its left side.
     """
 
-    def __init__(self, tables: Tables, builder: object) -> None:
-        self._rows = tables.rows
-        self._starts = tables.starts
-        self._ends = tables.ends
-        self._rules = [(r.size, _callback(r, builder), r.origin) for r in tables.rules]
+    def __init__(
+        self, automaton: Automaton | Tables, rules: Sequence[tuple[int, Callback | None, str]]
+    ) -> None:
+        self._rows = automaton.rows
+        self._starts = automaton.starts
+        self._ends = automaton.ends
+        self._rules = rules
 
-    def parse(self, tokens: Sequence[Lexeme], start: str) -> Any:
+    @staticmethod
+    def of(tables: Tables, builder: object) -> Loop:
+        """One whose builder has a method for each rule of the grammar, which gets the list of its parts."""
+        return Loop(tables, [(r.size, _callback(r, builder), r.origin) for r in tables.rules])
+
+    def parse(self, tokens: Sequence[Token], start: str) -> Any:
         """What the reductions make of a text.
 
         Raises:

@@ -29,7 +29,7 @@ _BUILDER = TreeBuilder()
 
 @cache
 def _loop() -> Loop:
-    return Loop(tables(), _BUILDER)
+    return Loop.of(tables(), _BUILDER)
 
 
 def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:

@@ -38,14 +38,21 @@ class Rule(NamedTuple):
     spliced: list[int]
 
 
-class Tables(NamedTuple):
+class Automaton(NamedTuple):
     """An LALR automaton.
 
     Args:
         rows: of each state: terminal or symbol -> next state if not negative, else ~number of a rule to reduce by.
         starts, ends: by start symbol.
-        rules: by number.
     """
+
+    rows: list[dict[str, int]]
+    starts: dict[str, int]
+    ends: dict[str, int]
+
+
+class Tables(NamedTuple):
+    """An automaton (`rows`, `starts`, `ends`), and its rules by number."""
 
     rows: list[dict[str, int]]
     starts: dict[str, int]
@@ -74,7 +81,6 @@ def tables() -> Tables:
 def _computed(grammar: str) -> Tables:
     from lark import Lark
     from lark.lexer import Lexer
-    from lark.parsers.lalr_analysis import Shift
 
     class NoLexer(Lexer):
         """Lark's lexer is not used: its tables are."""
@@ -94,6 +100,14 @@ def _computed(grammar: str) -> Tables:
         keep_all_tokens=True,
         maybe_placeholders=False,
     )
+    states, rules = automaton(lark)
+    return Tables(*states, [_rule(rule) for rule in rules])
+
+
+def automaton(lark: Any) -> tuple[Automaton, list[Any]]:
+    """The automaton of a parser that lark has made, and lark's rules by number."""
+    from lark.parsers.lalr_analysis import Shift
+
     table = lark.parser.parser.parser.parse_table
     numbers = {state: n for n, state in enumerate(table.states)}
     rules: dict[Any, int] = {}
@@ -106,12 +120,9 @@ def _computed(grammar: str) -> Tables:
             else:
                 row[kind] = ~rules.setdefault(argument, len(rules))
         rows.append(row)
-    return Tables(
-        rows,
-        {start: numbers[state] for start, state in table.start_states.items()},
-        {start: numbers[state] for start, state in table.end_states.items()},
-        [_rule(rule) for rule in rules],
-    )
+    starts = {start: numbers[state] for start, state in table.start_states.items()}
+    ends = {start: numbers[state] for start, state in table.end_states.items()}
+    return Automaton(rows, starts, ends), list(rules)
 
 
 def _rule(rule: Any) -> Rule:

@@ -43,7 +43,7 @@ _BEYOND = {
     "memory": "there is too little memory for them",
 }
 """What keeps a machine from looking at the states, of which another one might see more."""
-_WIDTH = 136
+_WIDTH = 117
 """Of a line in the head of a generated file."""
 UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
 
