@@ -161,7 +161,7 @@ def generate(
             checked_inputs=begun.checksums if checked else None,
             arena=arena,
             compiled=deployed,
-            net_size=len(net_files[0].text),
+            net_text=net_files[0].text,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate", "exercise"),

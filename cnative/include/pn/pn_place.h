@@ -42,6 +42,13 @@
 #define PN_SHARED PN_INLINE
 #endif
 
+/* What is seldom done, and would take the compiler long where it is copied to. */
+#if defined(__GNUC__)
+#define PN_APART __attribute__((noinline, unused)) static
+#else
+#define PN_APART static
+#endif
+
 /* Copies what an array place holds from one marking into another. */
 #define PN_COPY_PLACE(place, to, from)                                                                         \
     do {                                                                                                       \

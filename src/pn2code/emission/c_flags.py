@@ -7,6 +7,8 @@ otherwise (`-ffast-math`), or where it computes with more than double precision 
 
 from __future__ import annotations
 
+import re
+
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 """Sums of products are rounded as in the token game, on every processor. They come after the user's flags."""
@@ -20,18 +22,36 @@ COVERAGE_RUNS = 20
 COVERAGE_STEPS = 1_000
 """How many random runs `make coverage` makes besides a dry run, and how many firings each has at most."""
 LARGE = 500_000
-"""Characters of generated C from which compiling it for speed takes longer than is gained; some 100 transitions that
-are not alike."""
-QUICKER = ("-Og", "-DPN_MANY")
-"""For large nets, after `-O2`: a quarter of the compiler's time, and the explorers and simulators of the nets that were
-measured are as fast (docs/benchmarks.md). No value that is computed depends on them."""
+"""Characters of generated C from which compiling it for speed takes longer than is gained, whatever is in it."""
+MANY_MOVES = 120
+"""Places in the C at which tokens are taken from arrays or counters, or put there. With `-O2` the functions that do it
+are copied to each of them, 5 ms of the compiler's time. 30 to 60 transitions that are not alike have so many; a net
+whose places are slots has next to none."""
+QUICKER = ("-Og", "-DPN_MANY", "-fno-inline")
+"""For large nets, after `-O2`: a fifth of the compiler's time, and simulators of the nets that were measured are up to
+a tenth slower (docs/benchmarks.md). No value that is computed depends on them."""
+QUICKER_GCC = ("-fno-forward-propagate", "-fira-algorithm=priority")
+"""A seventh less for gcc, for code that is as fast; other compilers do not know them."""
 FALSE_ALARM = "-Wno-maybe-uninitialized"
 """With `-Og` gcc follows values less far, and may warn of some that are always set. clang does not know the warning."""
 
 
-def for_size(characters: int) -> tuple[str, ...]:
-    """What the compiler is told besides `-O2`, or whatever else is asked for, about generated C of this length."""
-    return QUICKER if characters > LARGE else ()
+_MOVES = re.compile(r"_(?:take|add|undo)\(")
+
+
+def is_large(generated: str) -> bool:
+    """Whether compiling this C for speed would take longer than is gained."""
+    return len(generated) > LARGE or len(_MOVES.findall(generated)) > MANY_MOVES
+
+
+def for_net(generated: str) -> tuple[str, ...]:
+    """What the compiler is told besides `-O2`, or whatever else is asked for, about the generated C of a net."""
+    return QUICKER if is_large(generated) else ()
+
+
+def for_large_nets(version: str) -> tuple[str, ...]:
+    """What a compiler that says this of itself is told about large nets besides."""
+    return QUICKER_GCC if "Free Software Foundation" in version else ()
 
 
 def for_compiler(command: str) -> tuple[str, ...]:

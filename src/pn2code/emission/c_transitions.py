@@ -120,8 +120,7 @@ class Transitions(Frame):
         A copy for each of them, which needs to be compiled, is only a little faster.
         """
         draws = t.effects.search_draws and t.effects.fire_draws
-        is_packed = all(self._net.places[i].packed for i in t.effects.touched)
-        return is_large(self._net) and is_packed and not draws and t.counts is None
+        return is_large(self._net) and not draws and t.counts is None
 
     def _is_others(self, t: ir.Transition) -> bool:
         """Whether it is played by another program than the supervisor of the cell."""

@@ -127,7 +127,7 @@ def emit(
     checked_inputs: Mapping[int, int] | None = None,
     arena: ArenaSize = arena_size.UNKNOWN,
     compiled: NetIR | None,
-    net_size: int = 0,
+    net_text: str = "",
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
 
@@ -140,7 +140,7 @@ def emit(
         checked_inputs: checksums of the tokens that places of input files began with, by place; None: nothing was
             checked.
         compiled: what is deployed, for what it needs of the runtime; None: it is not linked with it.
-        net_size: characters of the generated net.
+        net_text: the generated net.
         arena: the memory for lists, strings and moves.
     """
     net = partition.net
@@ -212,7 +212,7 @@ def emit(
         has_simulate=True,
         resets=_resets(compiled) if compiled is not None else _ANY,
         c_flags=c_flags,
-        net_flags=" ".join(c_flags.for_size(net_size)),
+        net_flags=" ".join(c_flags.for_net(net_text)),
         needs=required,
     )
     elements = [

@@ -256,9 +256,10 @@ class _Builder:
         tools += ["own", *host.own] if host.own else []
         tools += ["runtime", _digest_of(self.runtime)]
         self.library = folder / f"{host.name}-runtime-{_digest(tools)}.a"
-        size = sum(len(f.text) for f in self.files)
-        self.is_large = size > c_flags.LARGE
-        self.net_flags = (*c_flags.for_size(size), *host.net)
+        generated = "".join(f.text for f in self.files)
+        self.is_large = c_flags.is_large(generated)
+        own = c_flags.for_large_nets(compiler.version) if self.is_large else ()
+        self.net_flags = (*c_flags.for_net(generated), *own, *host.net)
         tools += ["net", *self.net_flags] if self.net_flags else []
         self.program = folder / f"{host.name}-{_digest(tools, self.files)}"
 

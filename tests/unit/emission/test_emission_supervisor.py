@@ -174,7 +174,7 @@ def test_a_large_net_is_compiled_quickly(
         digest="d" * 64,
         version="9.9",
         compiled=EMPTY,
-        net_size=c_flags.LARGE + more,
+        net_text="x" * (c_flags.LARGE + more),
     )
     (makefile,) = [f for f in files if f.path == "Makefile"]
     (tmp_path / "Makefile").write_text(makefile.text)

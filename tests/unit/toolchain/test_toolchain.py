@@ -214,6 +214,24 @@ def test_a_compiler_says_once_what_it_is(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_a_net_of_200_transitions_that_are_not_alike_is_large() -> None:
-    """Its C has some 900,000 characters, and the compiler takes four times as long over it with `-O2` alone."""
-    assert c_flags.for_size(890_000) == ("-Og", "-DPN_MANY")
-    assert c_flags.for_size(225_000) == ()
+    """Its C has some 900,000 characters, and the compiler takes five times as long over it with `-O2` alone."""
+    assert c_flags.for_net("x" * 890_000) == ("-Og", "-DPN_MANY", "-fno-inline")
+    assert c_flags.for_net("x" * 225_000) == ()
+
+
+def test_a_net_whose_tokens_are_moved_in_many_places_is_large() -> None:
+    """However short it is: fifty transitions that are not alike take the compiler two seconds with `-O2` alone."""
+    move = "(void)K_array_16_take(&m->P, &b->k, 1U) && K_array_16_add(cx, &m->P, &s_at_P, &b->k, 1U);\n"
+    assert c_flags.for_net(50 * move) == ()
+    assert c_flags.for_net(100 * move) == c_flags.QUICKER
+
+
+@pytest.mark.parametrize(
+    ("version", "flags"),
+    [
+        ("gcc 12.2.0\nCopyright (C) 2022 Free Software Foundation, Inc.", c_flags.QUICKER_GCC),
+        ("Debian clang version 14.0.6", ()),
+    ],
+)
+def test_only_gcc_is_told_what_only_gcc_knows(version: str, flags: tuple[str, ...]) -> None:
+    assert c_flags.for_large_nets(version) == flags

@@ -269,7 +269,7 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 UTILITIES = frozenset(
     {
         "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "GetOpt",
-        "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
+        "IOUtil", "IntHashTable", "PathUtil", "PrimeSizes", "PropList", "Rand",
         "RealOrderStats", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }
 )  # fmt: skip

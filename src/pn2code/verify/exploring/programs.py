@@ -35,8 +35,9 @@ HOST = Host("explore", flags=("-pthread",), own=("-march=native",), libraries=("
 and the runtime that computes its values, are compiled as everywhere else."""
 QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
-LARGE = replace(HOST, net=("-DPN_MANY", "-Og"))
-"""For nets of many transitions: a quarter of the compiler's time, and the explorer is as fast (docs/benchmarks.md)."""
+LARGE = replace(HOST, net=("-DPN_MANY", "-Og", "-finline"))
+"""For nets of many transitions: a quarter of the compiler's time, and the explorer is as fast (docs/benchmarks.md).
+Functions may be put where they are called: it is compiled for large spaces only."""
 MANY = 40
 """Transitions of a net that is worth to be compiled quickly first."""
 FIRST_STATES = 100_000
