@@ -9,14 +9,14 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from helpers.traced_runs import make, traces
-from pn2code import pipeline
-from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
+from pn2code.pipeline import Generated
 
 pytestmark = pytest.mark.cc
 
@@ -24,25 +24,25 @@ QEMU = "qemu-aarch64"
 CROSS = "aarch64-linux-gnu-gcc"
 
 
-def _compiler() -> str:
-    """A compiler for aarch64 that needs no libraries of the machine it runs on, as `CC` of make."""
+def _compiler() -> tuple[str, ...]:
+    """A compiler for aarch64 that needs no libraries of the machine it runs on, as variables of make."""
     if shutil.which(CROSS):
-        return f"{CROSS} -static"
+        return f"CC={CROSS}", "LDFLAGS=-static"
     if importlib.util.find_spec("ziglang") is not None:
-        return f"{sys.executable} -m ziglang cc -target aarch64-linux-musl"
+        return (f"CC={sys.executable} -m ziglang cc -target aarch64-linux-musl",)
     pytest.skip(f"there is neither `{CROSS}` nor the Python package `ziglang`")
 
 
 @pytest.mark.parametrize("name", ["riveting", "sorting", "timed"])
-def test_traces_are_the_same(name: str, root: Path, tmp_path: Path) -> None:
+def test_traces_are_the_same(
+    name: str, of_example: Callable[[str], Generated], tmp_path: Path
+) -> None:
     if shutil.which(QEMU) is None:
         pytest.skip(f"there is no `{QEMU}` (Debian: qemu-user)")
     compiler = _compiler()
-    d = Diagnostics()
-    made = pipeline.generate(root / "examples" / name, d)
-    assert made is not None, [str(i) for i in d]
+    made = of_example(name)
     here, there = tmp_path / "here", tmp_path / "aarch64"
-    for folder, options in ((here, ()), (there, (f"CC={compiler}",))):
+    for folder, options in ((here, ()), (there, compiler)):
         write(folder, made.files)
         make(folder, *options)
     header = (there / "supervisor.traced").read_bytes()[:20]

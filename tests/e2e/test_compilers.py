@@ -8,14 +8,14 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from helpers.traced_runs import make, traces
-from pn2code import pipeline
-from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
+from pn2code.pipeline import Generated
 
 pytestmark = pytest.mark.cc
 
@@ -29,13 +29,13 @@ def _there() -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["sorting", "timed"])
-def test_traces_are_the_same(name: str, root: Path, tmp_path: Path) -> None:
+def test_traces_are_the_same(
+    name: str, of_example: Callable[[str], Generated], tmp_path: Path
+) -> None:
     compilers = _there()
     if len(compilers) < 2:
         pytest.skip(f"nothing to compare with: of gcc, clang and ziglang there is {compilers}")
-    d = Diagnostics()
-    made = pipeline.generate(root / "examples" / name, d)
-    assert made is not None, [str(i) for i in d]
+    made = of_example(name)
     found = {}
     for number, compiler in enumerate(compilers):
         folder = tmp_path / str(number)

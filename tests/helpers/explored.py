@@ -57,10 +57,14 @@ def explorer_test(folder: Path, name: str, parts: Sequence[str], *flags: str) ->
         *(next(root.rglob(f"src/**/explore_{p}.c")) for p in parts),
     ]
     command = [compiler, *WARNINGS, "-O1", "-pthread", *flags]
-    command += [f"-I{root / 'include'}", f"-I{root / 'src'}", *map(str, sources)]
+    command += [f"-I{root / 'include'}", f"-I{root / 'src'}"]
     program = folder / name
-    done = subprocess.run([*command, "-o", program], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    objects = [str(folder / f"{name}-{source.stem}.o") for source in sources]
+    # One by one: what was compiled before is remembered.
+    steps = [["-c", str(s), "-o", o] for s, o in zip(sources, objects, strict=True)]
+    for step in (*steps, [*objects, "-o", str(program)]):
+        done = subprocess.run([*command, *step], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
     return program
 
 

@@ -61,15 +61,17 @@ class Hosts:
         compile_in(host, "-shared", "cell.c", "-o", "libcell.so")
         for name, more in HOSTS.items():
             own = sorted(source.glob("simulate/*.c" if name == "simulate" else "supervisor/*.c"))
-            own += [source / "port" / "port_posix.c"] if name != "simulate" else []
-            own += [source / "channel" / "pn_channel_files.c"] if name != "simulate" else []
-            objects = [str(f) for f in common]
+            room = host / f"{name}.objects"
+            room.mkdir()
+            for part in own:  # one by one: what was compiled before is remembered
+                compile_in(room, *more, "-c", str(part))
+            objects = [str(f) for f in (*sorted(room.glob("*.o")), *common)]
+            if name != "simulate":
+                objects += [str(host / f"{part}.o") for part in ("port_posix", "pn_channel_files")]
             library = "libcell.so" if name != "simulate" else LIBRARY
-            built = [f for f in map(str, own) if Path(f).with_suffix(".o").name not in objects]
             compile_in(
-                host, *more, "-rdynamic", *built, *objects,
-                f"-L{host}", f"-l:{library}", "-lm", "-o", name,
-            )  # fmt: skip
+                host, *more, "-rdynamic", *objects, f"-L{host}", f"-l:{library}", "-lm", "-o", name
+            )
         return Hosts(made)
 
     def compare(self, number: int, size: int) -> Outcome:

@@ -24,7 +24,8 @@ from pn2code.emission.environment import c_string
 KEPT = "PN2CODE_TEST_OBJECTS"
 """The variable with the folder where objects are kept from one run to the next."""
 SOURCE = Path(__file__).with_suffix(".c")
-NAMES = ("cc", "gcc")
+NAMES = ("cc", "gcc", "clang", "aarch64-linux-gnu-gcc")
+"""The first that is there compiles the program; tests compile the same runtime with each of them."""
 MOST_BYTES = 1 << 30
 """Of objects that are kept; the ones that were not used for the longest time go first."""
 _FLAGS = (STANDARD, "-O2", "-Wall", "-Wextra", "-Werror")

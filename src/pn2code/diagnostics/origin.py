@@ -128,6 +128,11 @@ class Span:
     end: int
 
     @property
+    def line(self) -> int:
+        """That of `origin`, without making one."""
+        return self.source.position(self.start)[0]
+
+    @property
     def origin(self) -> Origin:
         """The origin of the first character."""
         return self.source.origin_at(self.start)

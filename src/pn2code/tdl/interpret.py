@@ -211,13 +211,13 @@ class Interpreter:
     def _initialise(self) -> None:
         for v in self._program.variables.values():
             if v.initial is not None:
-                self._line = v.span.origin.line
+                self._line = v.span.line
                 self._assign(v.name, evaluate(v.initial, self))
 
     def _step(self) -> Request | None:
         body, at = self._at[-1]
         instruction = self._program.bodies[body].instructions[at]
-        self._line = instruction.span.origin.line or self._line
+        self._line = instruction.span.line or self._line
         following = at + 1
         match instruction:
             case flow.Jump(target):

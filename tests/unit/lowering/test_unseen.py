@@ -41,6 +41,23 @@ def test_in_loops() -> None:
     assert seen((loop,)) == (ir.While((), TEST, (ir.Do(CALL),)),)
 
 
+def test_where_nothing_is_left_out_it_is_the_same_object() -> None:
+    """So that it is looked at once."""
+    inner = (ir.Assign(X, ir.Use(Y)),)
+    whole = (ir.Declare(X), ir.If(TEST, inner, ()), ir.While(inner, TEST, ()), ir.Do(ir.Use(X)))
+    whole = (*whole, ir.Return(ir.Use(X)))
+    kept = seen(whole)
+    assert kept == (*whole[:3], ir.Return(ir.Use(X)))
+    assert kept[1] is whole[1] and kept[2] is whole[2]
+    assert seen(kept) is kept
+
+
+def test_what_was_read_by_what_has_gone() -> None:
+    """Y is read by the value of X alone, X by nobody: the second look finds it."""
+    chain = (ir.Let(Y, ONE), ir.If(TEST, (ir.Let(X, ir.Use(Y)),), ()), ir.Do(CALL))
+    assert seen(chain) == (ir.Do(TEST), ir.Do(CALL))
+
+
 def test_in_a_net() -> None:
     net, d = lowered(
         flat("""

@@ -181,3 +181,17 @@ def test_what_was_not_used_for_long_goes_first(tmp_path: Path) -> None:
         os.utime(tmp_path / name, (10_000 - age, 10_000 - age))
     remembering_cc.prune(tmp_path, most=25)
     assert {p.name for p in tmp_path.iterdir()} == {"new.o", "old.o"}
+
+
+def test_what_one_compiler_has_made_is_not_anothers(bench: Bench) -> None:
+    clang = bench.compiler.with_name("clang")
+    if not clang.exists():
+        pytest.skip("no clang")
+    first = bench.compiled()
+    made = []
+    for _ in range(2):
+        (bench.at / "a.o").unlink()
+        subprocess.run([clang, *FLAGS, "-c", "a.c"], cwd=bench.at, check=True)
+        made.append((bench.at / "a.o").read_bytes())
+    assert made[0] == made[1] != first
+    assert len(list(bench.store.glob("*.o"))) == 2  # of each compiler one, which is copied

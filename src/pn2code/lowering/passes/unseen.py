@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from operator import is_
 from typing import Any
 
 from pn2code.ir import nodes as ir
@@ -46,7 +47,10 @@ def seen(statements: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
     """The statements without those that no evaluation can tell from none."""
     read = _read(statements)
     while True:
-        statements = _without(statements, read)
+        kept = _without(statements, read)
+        if kept is statements:
+            return statements
+        statements = kept
         before, read = read, _read(statements)
         if read == before:
             return statements
@@ -62,7 +66,10 @@ def does_nothing(value: Ir) -> bool:
 
 
 def _without(statements: tuple[Stmt, ...], read: frozenset[int]) -> tuple[Stmt, ...]:
-    return tuple(kept for s in statements for kept in _kept(s, read))
+    """What is left of them; the same object where all of them are."""
+    kept = tuple(kept for s in statements for kept in _kept(s, read))
+    is_whole = len(kept) == len(statements) and all(map(is_, kept, statements))
+    return statements if is_whole else kept
 
 
 def _kept(s: Stmt, read: frozenset[int]) -> Iterator[Stmt]:
@@ -87,7 +94,9 @@ def _kept(s: Stmt, read: frozenset[int]) -> Iterator[Stmt]:
                 yield s
         case ir.If(condition=condition):
             then, otherwise = _without(s.then, read), _without(s.otherwise, read)
-            if then or otherwise:
+            if then is s.then and otherwise is s.otherwise and (then or otherwise):
+                yield s
+            elif then or otherwise:
                 yield replace(s, then=then, otherwise=otherwise)
             else:
                 yield from _done(condition)
@@ -97,8 +106,12 @@ def _kept(s: Stmt, read: frozenset[int]) -> Iterator[Stmt]:
 
 def _within(s: Any, read: frozenset[int]) -> Stmt:
     """A statement with others inside it, without those of them that are unseen."""
-    nested = {name: _without(getattr(s, name), read) for name in _nested(s.__class__)}
-    return replace(s, **nested) if nested else s  # type: ignore[no-any-return]
+    changed = {}
+    for name in _nested(s.__class__):
+        before = getattr(s, name)
+        if (left := _without(before, read)) is not before:
+            changed[name] = left
+    return replace(s, **changed) if changed else s  # type: ignore[no-any-return]
 
 
 def _done(value: Ir) -> Iterator[Stmt]:
@@ -117,15 +130,22 @@ def _nested(kind: type[Any]) -> tuple[str, ...]:
 def _read(statements: tuple[Stmt, ...]) -> frozenset[int]:
     """The locals whose values somebody looks at."""
     known: frozenset[int] | None = None
+    assigned: set[int] = set()
     while True:
-        found = frozenset(_uses(statements, known))
-        if found == known:
+        found = frozenset(_uses(statements, known, assigned))
+        if found == known or assigned <= found:  # with all of them read, no value is left out
             return found
         known = found
 
 
-def _uses(item: object, known: frozenset[int] | None) -> Iterator[int]:
-    """`known`: the locals that are read as far as is known; what goes to others alone is not looked at."""
+def _uses(item: object, known: frozenset[int] | None, assigned: set[int]) -> Iterator[int]:
+    """The locals that are read.
+
+    Args:
+        item: statements.
+        known: those that are, as far as is known; what goes to others alone is not looked at.
+        assigned: gets the locals that are given a value.
+    """
     waiting = [item]
     while waiting:
         item = waiting.pop()
@@ -136,13 +156,14 @@ def _uses(item: object, known: frozenset[int] | None) -> Iterator[int]:
             case ir.Use(local=local):
                 if local.type.rep is not Rep.UNIT:  # which has no variable
                     yield local.uid
-            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
-                known is not None and local.uid not in known and does_nothing(value)
-            ):
-                continue
+            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value):
+                assigned.add(local.uid)
+                if known is not None and local.uid not in known and does_nothing(value):
+                    continue
             case ir.Do(value=value) if does_nothing(value):
                 continue
             case ir.SetContents(reference=ir.Use(local=local), value=value) if _is_plain(item):
+                assigned.add(local.uid)
                 if known is None or local.uid in known or not does_nothing(value):
                     waiting.append(value)
                 continue
