@@ -20,6 +20,7 @@ import socket
 import subprocess
 import tempfile
 import time
+import urllib.error
 import urllib.request
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -248,7 +249,7 @@ def firefox(*, with_webgl: bool = True, is_dark: bool = False) -> Iterator[Other
             "--remote-allow-system-access",
             "--no-remote",
             "--profile",
-            folder,
+            str(folder),
         ]
         environment = {
             **os.environ,
