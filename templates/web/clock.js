@@ -5,6 +5,8 @@
 
 export const SLOWEST = 0.1;
 export const FASTEST = 50;
+/** Of a gap between two pictures (s) that much counts: after a longer one the page was in the background. */
+const LONGEST_GAP = 1;
 
 export class Clock {
   /**
@@ -86,7 +88,7 @@ export class Clock {
   /** @param {number} now */
   frame(now) {
     if (!this.isPlaying) return;
-    const passed = this.last ? Math.min((now - this.last) / 1000, 0.25) : 0;
+    const passed = this.last ? Math.min((now - this.last) / 1000, LONGEST_GAP) : 0;
     this.last = now;
     this.seek(this.t + passed * this.speed);
     if (this.t >= this.end) this.pause();

@@ -373,17 +373,60 @@ class TestRivetingCell:
         ] == []
 
 
+DRAWN_BY = """
+    for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
+        const own = kind.prototype.getParameter;
+        kind.prototype.getParameter = function (name) {
+            return name === 0x9246 ? "%s" : own.call(this, name);
+        };
+    }
+"""
+
+
+@pytest.mark.cc
+def test_a_browser_that_hides_who_draws_is_measured(shown: Shown, chromium: Any) -> None:
+    """WebKit says `Apple GPU` everywhere; here it is the processor."""
+    with opened(chromium) as browser:
+        browser.page.add_init_script(DRAWN_BY % "Apple GPU")
+        browser.open(shown.file)
+        assert browser.ask("() => [replay.page.cell.isSparing, replay.page.cell.hasShadows]") == [
+            True,
+            False,
+        ]
+        assert browser.errors == []
+
+
+@pytest.mark.cc
+def test_pictures_that_take_seconds_are_too_slow_as_well(browser: Page) -> None:
+    asked = browser.ask("""() => {
+        const thrift = new (replay.page.cell.thrift.constructor)();
+        const pictures = (...times) => times.map((t) => thrift.picture(t));
+        const first = pictures(10, 5000, 10000, 15000, 20000);
+        thrift.rest();  // the page was in the background
+        return [first, pictures(90000, 90020, 90600, 90620, 91200, 91220)];
+    }""")
+    assert asked == [[False, False, False, True, False], [False] * 6]
+
+
+@pytest.mark.cc
+def test_the_cursor_keeps_the_time_where_pictures_are_slow(browser: Page) -> None:
+    moved = browser.ask("""() => {
+        const { clock } = replay.page;
+        const before = requestAnimationFrame;
+        window.requestAnimationFrame = () => 0;
+        clock.seek(1), clock.play();
+        for (const t of [1000, 1800, 2600]) clock.frame(t);
+        clock.pause();
+        window.requestAnimationFrame = before;
+        return clock.t;
+    }""")
+    assert moved == pytest.approx(2.6)
+
+
 @pytest.mark.cc
 def test_with_a_gpu_there_are_shadows_and_all_of_the_shapes(shown: Shown, chromium: Any) -> None:
     with opened(chromium) as browser:
-        browser.page.add_init_script("""
-            for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
-                const own = kind.prototype.getParameter;
-                kind.prototype.getParameter = function (name) {
-                    return name === 0x9246 ? "A GPU" : own.call(this, name);
-                };
-            }
-        """)
+        browser.page.add_init_script(DRAWN_BY % "A GPU")
         browser.open(shown.file)
         browser.wait("replay.page.cell.hasShadows")
         seen = browser.ask("""() => {

@@ -13,8 +13,13 @@ import pytest
 from helpers.browser import launched, opened
 from helpers.door_cell import NET, TOML, door_cell
 from helpers.lively import running
+from helpers.processes import pn2code
 from helpers.robot_cells import nowhere
+from pn2code.cli.watch import _cell as watched_cell
 from pn2code.diagnostics import Diagnostics
+from pn2code.live.seen import Life, Seen, Side
+from pn2code.live.tails import Tail
+from pn2code.live.watched import Watched
 from pn2code.net.source import read
 from pn2code.replay import cell as cells
 from pn2code.replay import run as runs
@@ -137,6 +142,39 @@ def test_a_zone_is_lit_on_the_live_page_as_soon_as_it_is_broken(tmp_path: Path) 
         shown.ask("() => live.seek(0)")
         assert shown.ask(COLOURS.replace("replay", "live")) == ["e69f00", "0072b2"]
         assert not shown.errors
+
+
+@pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
+def test_who_watches_from_elsewhere_is_told_of_a_broken_zone(tmp_path: Path) -> None:
+    """The page of `watch` lights what it is told of as that of a live run does."""
+    folder, out = door_cell(tmp_path / "cell", NET, TOML + FRONT), tmp_path / "run"
+    ran = pn2code(
+        "run", folder, "--realtime", "--speed", "5", "--backend", "fake", "--no-pictures", "--unchecked",
+        "--no-replay", "-o", out,
+    )  # fmt: skip
+    assert ran.returncode == 1, ran.stderr
+    broken = json.loads((out / "summary.json").read_text(encoding="utf-8"))["zones"]["front"]
+    found = watched_cell(folder, None, {}, None, Diagnostics())
+    assert found is not None
+    names = [o.name for o in found[0].partition.owners]
+    seen = Seen(True, "", 0.0, {n: Side(Life.STOPPED) for n in names}, {})
+    tail = Tail(out / "robots.trace.jsonl")
+    tail.look()
+    with Watched(found[0], tail.session, 0.0, is_from_start=True) as watched:
+        assert watched.update(0.0, seen, None)["broken"] is None
+        watched.take(tail)
+        told = watched.update(0.0, seen, None)
+        assert tail.unreadable == 0
+        assert told["broken"] == {"zone": "front", **broken, "t": told["broken"]["t"]}
+        assert 0.0 < told["broken"]["t"] <= told["t"]
+    [line] = [x for x in tail.lines if x.get("event") == "zone"]
+    for wrong in ({"zone": "none"}, {"speed": "fast"}, {"point": [0.0]}, {"t": float("nan")}):
+        tail.lines, tail.unreadable = [{**line, **wrong}], 0
+        with Watched(found[0], tail.session, 0.0, is_from_start=True) as watched:
+            watched.take(tail)
+            assert watched.update(0.0, seen, None)["broken"] is None
+            assert tail.unreadable == 1
 
 
 def test_the_moment_at_which_a_zone_is_broken_is_exact() -> None:

@@ -34,6 +34,10 @@ class Ticking:
         self._thread.start()
         return self
 
+    def turn_to(self, what: str) -> None:
+        """Something else takes the time from now on; the seconds are those of all."""
+        self._what = what
+
     def __exit__(
         self,
         kind: type[BaseException] | None,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import time
+from collections.abc import Iterable
 from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
@@ -11,6 +13,8 @@ from typing import Annotated
 import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.progress_line import Line
+from pn2code.base.ticking import Ticking
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
 from pn2code.contest.asking import UNKNOWN, Asking
@@ -85,8 +89,7 @@ def contest(
                 lines = asking.of_tables(net)
             else:
                 lines = asking.of_net(net, lambda net: _tables(net, d))
-            for line in lines:
-                typer.echo(line)
+            _print(lines, asking)
         except FormulaError as error:
             typer.echo(f"pn2code: {error}", err=True)
             typer.echo(UNKNOWN)
@@ -94,6 +97,28 @@ def contest(
         except GameError as problem:  # more tokens than are made
             typer.echo(f"pn2code: the initial marking cannot be made: {problem.message}", err=True)
             typer.echo(UNKNOWN)
+
+
+def _print(lines: Iterable[str], asking: Asking) -> None:
+    """The answers as they come; meanwhile a terminal shows how many there are, how many a minute, and how long yet."""
+    began = time.monotonic()
+
+    def tell(seconds: str) -> None:
+        left = f"{max(asking.deadline.left or 0.0, 0.0):.0f} s left at most"
+        if asking.unknown is None:
+            line.say(f"{seconds}   {left}")
+            return
+        rate = 60.0 * count / max(time.monotonic() - began, 1.0)
+        line.say(
+            f"{seconds}   {count} answered, {rate:,.0f}/min   {len(asking.unknown)} open   {left}"
+        )
+
+    count = 0
+    with Line(first="") as line, Ticking(tell, str(asking.examination)):
+        for text in lines:
+            count += 1
+            line.clear()
+            typer.echo(text)
 
 
 def _tables(net: FlatNet, d: Diagnostics) -> Tables | None:

@@ -280,7 +280,7 @@ class _Writer:
                 rows.append(f"<h{level}>{escape(block.name)}</h{level}>")
             for item in block.items:
                 if isinstance(item, RawBlock):
-                    show(item, min(level + 1, 6))
+                    show(item, min(level + bool(block.name), 6))
                     continue
                 rows.append(f"<pre>{escape(declaration_text(item))}</pre>")
                 rows.extend(

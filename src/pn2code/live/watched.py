@@ -11,6 +11,7 @@ What is observed and what is inferred is part of each update (`basis`).
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -106,6 +107,7 @@ class Watched(Closing):
         self._explained: dict[str, int] = {}
         self._kept: dict[str, list[Json]] = {}
         self.last_word: Json = {}
+        self._broken: Json | None = None
 
     # --- what comes ------------------------------------------------------------------------------
 
@@ -139,6 +141,8 @@ class Watched(Closing):
             self.last_word = line
             return
         try:
+            if line.get("event") == "zone" and self._broken is None:
+                self._broken = self._zone(line)
             event = self._robots.take(line)
         except (KeyError, TypeError, ValueError):
             tail.unreadable += 1
@@ -149,6 +153,16 @@ class Watched(Closing):
             self.last_word = line
         if isinstance(line.get("t"), int | float):
             self._noted = max(self._noted, float(line["t"]))
+
+    def _zone(self, line: Json) -> Json:
+        """The zone in which something was too fast, as the page has it."""
+        if line["zone"] not in self._cell.robot_cell.zones:
+            raise ValueError(line["zone"])
+        t, speed, *point = (float(v) for v in (line["t"], line["speed"], *line["point"]))
+        if len(point) != len("xyz") or not all(math.isfinite(v) for v in (t, speed, *point)):
+            raise ValueError(line)
+        link = str(line["link"])[:LONGEST]
+        return {"zone": line["zone"], "t": t, "link": link, "speed": speed, "point": point}
 
     def see(
         self, t: float, texts: Mapping[str, str | None], turns: Mapping[str, int] | None
@@ -332,6 +346,7 @@ class Watched(Closing):
             },
             "basis": [*self._basis(), *self._files(seen), *left],
             "verdict": verdict,
+            "broken": self._broken,
         }
 
     def _side(self, index: int, name: str, seen: Seen, t: float) -> Json:

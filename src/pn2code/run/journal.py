@@ -89,6 +89,11 @@ class Journal:
         self._stood[robot] = (now, joints)
         self._note("arm", robot=robot, q=joints)
 
+    def zone(self, name: str, link: str, speed: float, point: Sequence[float]) -> None:
+        """Something was too fast in a zone: which link, how fast (m/s), and the point of it (m)."""
+        place = [round(v, 6) for v in point]
+        self._note("zone", zone=name, link=link, speed=round(speed, 6), point=place)
+
     def end(self, robot: str, why: str, reason: str = "") -> None:
         """This is how it ended."""
         self._note("said", robot=robot, why=why, reason=reason)

@@ -79,6 +79,8 @@ class RunJournal:
         """The run is over: the traces have been merged by now."""
         record = engine.record
         self.advanced(engine)
+        if (broken := record.too_fast) is not None:
+            self._journal.zone(broken.zone, broken.link, broken.speed, broken.point)
         for robot in engine.robots:
             self._journal.end(robot.name, record.verdict, record.reason)
         self._journal.close()

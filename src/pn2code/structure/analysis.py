@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import frozen
@@ -35,6 +35,17 @@ from pn2code.structure.coloured import (
 )
 from pn2code.structure.skeleton import Skeleton, skeleton
 from pn2code.structure.symbolic import Symbolic
+
+STAGES = (
+    "initial marking",
+    "place invariants",
+    "coloured invariants",
+    "transition invariants",
+    "siphons",
+    "traps",
+    "bounds",
+)
+"""What is computed, in this order."""
 
 
 @frozen
@@ -190,6 +201,7 @@ def analyse(
     *,
     storage: Mapping[str, str] | None = None,
     given: Collection[str] = (),
+    stage: Callable[[str], None] = lambda text: None,
 ) -> Analysis:
     """Everything.
 
@@ -198,25 +210,39 @@ def analyse(
         limits: of the searches.
         storage: colour sets of reals that are stored in another way, as for `Game`.
         given: names of places whose initial marking is given from outside: it is not known here.
+        stage: is told what is computed next, and how much of all that is.
     """
     limits = limits or Limits()
+    parts_of_it = iter(STAGES)
+
+    def next_stage() -> None:
+        name = next(parts_of_it)
+        stage(f"{name} ({1 + STAGES.index(name)} of {len(STAGES)})")
+
+    next_stage()
     start = start_of(net, storage or {}, given)
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     initial = start.initial
+    next_stage()
     p_flows = _p_flows(skel, limits)
     everything = flows.basis(without_resets(skel), limits.flows)
+    next_stage()
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
+    next_stage()
     t_flows = _t_flows(skel, limits)
     g = graph(net)
     covered = {p for v in p_flows.vectors for p in v}
+    next_stage()
     found, complete = _siphons(skel, initial, limits)
+    next_stage()
     traps = siphons.minimal(
         siphons.trap_rules(skel),
         range(len(net.places)),
         most=limits.siphons,
         work=limits.siphon_work,
     )
+    next_stage()
     place_bound = place_bounds(
         skel,
         initial,

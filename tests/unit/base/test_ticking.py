@@ -30,3 +30,18 @@ def test_what_ends_at_once_says_nothing_and_errors_end_it() -> None:
     with pytest.raises(KeyError), Ticking(said.append, "run", 10.0):
         raise KeyError
     assert said == []
+
+
+def test_it_turns_to_something_else() -> None:
+    said: list[str] = []
+    enough = threading.Event()
+
+    def say(text: str) -> None:
+        said.append(text)
+        if text.startswith("siphons"):
+            enough.set()
+
+    with Ticking(say, "reading the net", 0.001) as ticking:
+        ticking.turn_to("siphons (5 of 7)")
+        assert enough.wait(20)
+    assert said[-1] == "siphons (5 of 7): 0 s"

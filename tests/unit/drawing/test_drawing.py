@@ -546,6 +546,18 @@ def test_html_has_the_declarations_with_their_errors() -> None:
     assert '<p class="errors">&lt;odd&gt;</p>' in written
 
 
+def test_headings_leave_out_no_level() -> None:
+    blocks = b"<block><id>Outer</id><block><block><id>Inner</id></block></block></block></globbox>"
+    found = read_data(
+        netbuilder.cpn(SMALL).replace(b"</globbox>", blocks), "test.cpn", Diagnostics()
+    )
+    assert found is not None
+    written = draw_net(found, Facts("small.cpn"))
+    levels = [int(n) for n in re.findall(r"<h([1-6])>", written)]
+    assert levels[0] == 1 and max(levels) == 4
+    assert all(b <= a + 1 for a, b in zip(levels, levels[1:], strict=False))
+
+
 def test_many_uses_of_pages_end() -> None:
     """A hierarchy with millions of ways down is listed in part."""
     rows = ["net Many", "  standard"]
