@@ -115,7 +115,7 @@ def test_in_the_page_a_person_answers_and_lets_a_device_fail(
             question.get_by_role("button", name="bad", exact=True).click()
             question.wait_for(state="hidden")
             page.get_by_role("tab", name="Intervene").click()
-            assert page.get_by_text("whether the gripper holds the part").is_visible()
+            page.get_by_text("whether the gripper holds the part").wait_for()
             browser.ask("() => live.page.frame.dark()")
             assert complaints(browser) == []
             page.get_by_role("button", name="Hold: belt").click()

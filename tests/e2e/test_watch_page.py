@@ -75,8 +75,9 @@ def test_a_cell_is_seen_from_before_its_start_to_after_its_end(
         assert served.get(f"/{served.token}/", host="evil.example")[0] == 421
         assert served.get(f"/{served.token}/..%2f..%2fetc/passwd")[0] == 404
         # The connection goes and comes, and nothing is lost meanwhile.
+        browser.listen("#said")
         browser.ask("() => live.link.socket.close()")
-        page.get_by_text("The connection is lost").wait_for()
+        browser.hear("The connection is lost")
         played.accept(1)
         played.report(1)
         played.placed(1)

@@ -37,7 +37,7 @@ class Played:
         self.supervisor = SharedDirectory(folder, "supervisor", specs)
         self.session = self.supervisor.announce()
         self.robot = SharedDirectory(folder, "robot", specs)
-        assert self.robot.await_supervisor(5.0)
+        assert self.robot.await_supervisor(600.0)
         self.t = 0.0
         self._steps = 0
         self._trace = folder / "supervisor.trace.jsonl" if "supervisor" in traces else None
