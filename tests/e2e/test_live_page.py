@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from helpers.browser import launched, opened
-from helpers.lively import HOSTILE, hostile, running
+from helpers.lively import HOSTILE, endless, hostile, running
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def chromium() -> Iterator[Any]:
 
 
 def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) -> None:
-    cell = hostile(root / "examples/minimal", tmp_path / "cell")
+    cell = hostile(endless(root / "examples/minimal", tmp_path / "endless"), tmp_path / "cell")
     with running(cell, tmp_path / "run", "--speed", "0.15") as run, opened(chromium) as browser:
         page = browser.page
         page.goto(run.url)
@@ -77,8 +77,9 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
 def test_the_address_with_the_token_stops_at_once(
     root: Path, chromium: Any, tmp_path: Path
 ) -> None:
+    cell = endless(root / "examples/minimal", tmp_path / "cell")
     with (
-        running(root / "examples/minimal", tmp_path / "run", "--speed", "0.1") as run,
+        running(cell, tmp_path / "run", "--speed", "0.1") as run,
         opened(chromium) as browser,
     ):
         page = browser.page
