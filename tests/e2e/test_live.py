@@ -131,19 +131,26 @@ def test_a_run_is_told_from_its_beginning_to_its_end(root: Path, tmp_path: Path)
 
 
 def test_the_run_goes_on_when_its_server_is_killed(root: Path, tmp_path: Path) -> None:
-    more = ("--intervene", "--speed", "3")
-    with running(root / "examples/minimal", tmp_path / "run", *more, is_forking=False) as run:
-        with Person(run) as person:
-            # The run cannot end before the server does, since who holds the robot is there until then.
-            person.join(token_of(run))
-            person.act("hold", party="robot")
-            person.until(lambda h: h["held"])
-            pid = child_of(run.process.pid)
-            signal_to(pid)
-        code, said = run.wait()
-    assert code == 0, said
-    assert "the live page has ended before the run did" in said
-    assert "each enabled when its turn came" in replayed(run, root / "examples/minimal")
+    """Where a machine is so busy that the run is over before somebody is heard, a slower one is next."""
+    for speed in ("3", "0.5", "0.05"):
+        out = tmp_path / f"run-{speed}"
+        more = ("--intervene", "--speed", speed)
+        with running(root / "examples/minimal", out, *more, is_forking=False) as run:
+            try:
+                with Person(run) as person:
+                    # The run cannot end before the server does, since who holds the robot is there until then.
+                    person.join(token_of(run))
+                    person.act("hold", party="robot")
+                    person.until(lambda h: h["held"])
+                    signal_to(child_of(run.process.pid))
+            except ConnectionError:
+                continue
+            code, said = run.wait()
+        assert code == 0, said
+        assert "the live page has ended before the run did" in said
+        assert "each enabled when its turn came" in replayed(run, root / "examples/minimal")
+        return
+    raise AssertionError("each of the runs was over too soon")
 
 
 def child_of(parent: int) -> int:
