@@ -26,7 +26,7 @@ ARGUMENTS = (
 )
 PLAIN = ("--no-sandbox", "--enable-unsafe-swiftshader")
 """Without a GPU, and otherwise as the browser decides: it draws the page itself without SwiftShader then."""
-PATIENCE_MS = 600_000
+PATIENCE_MS = 240_000
 """Ends what hangs."""
 
 
