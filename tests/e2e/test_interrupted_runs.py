@@ -25,12 +25,11 @@ def test_a_run_on_the_wall_clock_leaves_its_trace(root: Path, tmp_path: Path) ->
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, process_group=0
     )
     try:
-        trace = out / "supervisor.trace.jsonl"
+        journal = out / "robots.trace.jsonl"
         until = time.monotonic() + PATIENCE_S
-        while not (trace.is_file() and trace.read_text(encoding="utf-8").count("\n") > 1):
+        while not (journal.is_file() and '"event": "command"' in journal.read_text("utf-8")):
             assert process.poll() is None and time.monotonic() < until, process.communicate()
             time.sleep(0.02)
-        time.sleep(0.3)  # the robot takes its command
         os.killpg(process.pid, signal.SIGINT)
         output, errors = process.communicate(timeout=PATIENCE_S)
     finally:

@@ -15,9 +15,6 @@ from helpers.legible import complaints
 from helpers.lively import Person, Running, running, token_of
 from helpers.processes import pn2code
 
-LONG_MS = 300_000
-"""For a page on a busy machine."""
-
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
@@ -103,7 +100,6 @@ def test_in_the_page_a_person_answers_and_lets_a_device_fail(
         other.join(token)
         other.act("way", party="robot", sensor="gripper", way="own")
         page = browser.page
-        page.set_default_timeout(LONG_MS)
         with other.listening():
             page.goto(f"{run.url}#act={token}")
             page.wait_for_selector("body[data-ready=true]")
@@ -115,7 +111,7 @@ def test_in_the_page_a_person_answers_and_lets_a_device_fail(
             question.get_by_role("button", name="bad", exact=True).click()
             question.wait_for(state="hidden")
             page.get_by_role("tab", name="Intervene").click()
-            assert page.get_by_text("whether the gripper holds the part").is_visible()
+            page.get_by_text("whether the gripper holds the part").wait_for()
             browser.ask("() => live.page.frame.dark()")
             assert complaints(browser) == []
             page.get_by_role("button", name="Hold: belt").click()

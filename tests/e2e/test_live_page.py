@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from helpers.browser import launched, opened
-from helpers.lively import HOSTILE, hostile, running
+from helpers.lively import HOSTILE, endless, hostile, running
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def chromium() -> Iterator[Any]:
 
 
 def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) -> None:
-    cell = hostile(root / "examples/minimal", tmp_path / "cell")
+    cell = hostile(endless(root / "examples/minimal", tmp_path / "endless"), tmp_path / "cell")
     with running(cell, tmp_path / "run", "--speed", "0.15") as run, opened(chromium) as browser:
         page = browser.page
         page.goto(run.url)
@@ -32,8 +32,9 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
         browser.wait(
             f"JSON.stringify(live.tcp(0, live.page.clock.t)) !== {json.dumps(json.dumps(before))}"
         )
-        browser.wait("live.page.course.steps >= 2")
-        assert dict(browser.ask("() => live.marking()"))["Cell.Robot.Told"] == "1`1"
+        browser.wait("live.page.clock.k >= 2 && live.page.clock.isLive")
+        at_two = browser.ask("() => (live.step(2), live.marking())")
+        assert dict(at_two)["Cell.Robot.Told"] == "1`1"
         page.get_by_role("row", name="robot works joint").wait_for()
         assert HOSTILE in page.locator(".sheet").text_content() + browser.ask(
             "() => JSON.stringify(live.page.run.net.transitions.map(t => t.name))"
@@ -45,8 +46,9 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
         page.get_by_role("button", name="Live").click()
         browser.wait("live.page.clock.isLive && live.page.clock.t > 0.3")
         # The connection goes and comes.
+        browser.listen("#said")
         steps = browser.ask("() => (live.link.socket.close(), live.page.course.steps)")
-        page.get_by_text("The connection is lost").wait_for()
+        browser.hear("The connection is lost")
         page.get_by_text("The connection is lost").wait_for(state="hidden")
         assert browser.ask("() => live.page.course.steps") >= steps
         # Only with the token of the terminal the cell stops.
@@ -75,8 +77,9 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
 def test_the_address_with_the_token_stops_at_once(
     root: Path, chromium: Any, tmp_path: Path
 ) -> None:
+    cell = endless(root / "examples/minimal", tmp_path / "cell")
     with (
-        running(root / "examples/minimal", tmp_path / "run", "--speed", "0.1") as run,
+        running(cell, tmp_path / "run", "--speed", "0.1") as run,
         opened(chromium) as browser,
     ):
         page = browser.page

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import pytest
 
 from helpers import netbuilder
-from helpers.browser import PATIENCE_MS, Page, launched, opened
+from helpers.browser import Page, launched, opened
 from helpers.legible import complaints
 from helpers.monitors import Spec, with_monitors
 from helpers.played import Served, marking, of, served
@@ -54,10 +53,7 @@ def position(browser: Page) -> int:
 
 def at(browser: Page, number: int) -> None:
     """Waits until so many entries have happened."""
-    until = time.monotonic() + PATIENCE_MS / 1000
-    while position(browser) != number:
-        assert time.monotonic() < until, f"at {position(browser)}, not {number}"
-        browser.page.wait_for_timeout(20)
+    browser.wait(f"play.page.position.state.position === {number}")
 
 
 def transition(browser: Page, name: str) -> Any:
@@ -133,11 +129,8 @@ class TestPlaying:
         """Fifty steps at random, some of them taken back: the saved run, repeated, gives what the page shows."""
         keys = browser.page.keyboard
         for k in range(25):
-            before = position(browser)
             keys.press("Space" if k % 6 != 5 else "ArrowLeft")
-            browser.wait(
-                f"play.page.position.state.position !== {before} || document.querySelector('#said:not([hidden])')"
-            )
+            browser.wait("play.page.link.waiting.size === 0")
         with browser.page.expect_download() as saved:
             browser.page.get_by_role("tab", name="Game").click()
             browser.page.get_by_role("button", name="Save the run").click()
@@ -232,19 +225,25 @@ class TestPlaying:
     def test_dots_start_after_the_picture_of_their_step(self, browser: Page) -> None:
         seen = browser.ask("""async () => {
             const { net, link } = play.page, { flights } = net, found = [];
-            const note = () => found.push([flights.waiting.length, flights.ways.size]);
-            const hear = link.hear.bind(link);
-            link.hear = said => { hear(said); note(); };
-            document.querySelector(".sheet .enabled").dispatchEvent(new MouseEvent("click", { bubbles: true }));
-            while (!found.length) await new Promise(requestAnimationFrame);
-            await new Promise(requestAnimationFrame);
-            await new Promise(requestAnimationFrame);
-            note();
-            const times = [...flights.ways].map(way => way.effect.getTiming());
+            let pictures = 0, times = [];
+            (function count() { pictures++; requestAnimationFrame(count); })();
+            const note = () => found.push([flights.waiting.length, flights.ways.size, pictures]);
+            const [hear, depart] = [link.hear.bind(link), flights.depart.bind(flights)];
+            link.hear = said => { hear(said); if (said.state) note(); };
+            await new Promise(departed => {
+                flights.depart = () => {
+                    depart();
+                    note();
+                    times = [...flights.ways].map(way => way.effect.getTiming());
+                    departed();
+                };
+                document.querySelector(".sheet .enabled").dispatchEvent(new MouseEvent("click", { bubbles: true }));
+            });
             return { found, delays: times.map(t => t.delay), lasts: times.map(t => t.duration) };
         }""")
-        [first, *_, last] = seen["found"]
-        assert first == [1, 0] and last[0] == 0 and last[1] >= 2
+        [first, last] = seen["found"]
+        assert first[:2] == [1, 0] and last[0] == 0 and last[1] >= 2
+        assert last[2] - first[2] == 2, "there is a picture without them before"
         assert set(seen["delays"]) == {0} and len(set(seen["lasts"])) == 1
 
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:

@@ -90,6 +90,7 @@ def shown(
 def browser(shown: Shown, chromium: Any) -> Iterator[Page]:
     with opened(chromium) as found:
         found.open(shown.file)
+        found.settled()
         yield found
 
 
@@ -477,6 +478,7 @@ def test_on_a_phone_what_occurs_can_be_read(shown: Shown, chromium: Any) -> None
     }"""
     with opened(chromium, **TURNED) as browser:
         browser.open(shown.file, "#step=30")
+        browser.settled()
         for step in (30, 31, 60, 90):
             browser.ask("k => replay.step(k)", step)
             size, is_seen = browser.ask(text)
@@ -492,8 +494,9 @@ def test_on_a_phone_what_occurs_can_be_read(shown: Shown, chromium: Any) -> None
         browser.page.get_by_role("button", name="Follow").click(click_count=2)
         assert browser.ask(text)[0] > 8
         browser.page.get_by_role("button", name="More").click()
-        said = browser.page.locator(".panel.messages .said").first
-        assert said.bounding_box()["width"] > 100
+        browser.wait(
+            "document.querySelector('.panel.messages .said')?.getBoundingClientRect().width > 100"
+        )
         assert browser.errors == []
 
 
@@ -511,7 +514,7 @@ def test_a_hostile_net_does_nothing(tmp_path: Path, chromium: Any) -> None:
         assert "onerror" in browser.page.locator("#found").inner_text()
         field.press("Escape")
         browser.page.get_by_role("tab", name="Run").click()
-        browser.page.wait_for_timeout(300)
+        browser.settled()
         assert browser.dialogues == []
         assert browser.page.locator("img, iframe, object").count() == 0
         assert browser.errors == []
@@ -612,8 +615,8 @@ def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: A
         one, two = browser.ask(cameras)
         assert one == pytest.approx(two, abs=1e-9)
         browser.page.get_by_role("tab", name="Time of B").click()
-        body = browser.page.locator(".time-of-b canvas").first.bounding_box()
-        assert body["width"] > 200 and body["height"] > 60
+        size = "document.querySelector('.time-of-b canvas').getBoundingClientRect()"
+        browser.wait(f"{size}.width > 200 && {size}.height > 60")
         assert complaints(browser) == []
         assert browser.errors == []
 

@@ -33,6 +33,12 @@ def browser(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         assert found.errors == []
 
 
+def pane(browser: Page, name: str) -> None:
+    """Shows it; until what it shows has the size that it has there."""
+    browser.ask("name => replay.page.frame.pane(name)", name)
+    browser.settled()
+
+
 def middle(browser: Page, selector: str) -> Point:
     box = browser.page.locator(selector).first.bounding_box()
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -46,7 +52,7 @@ class TestCell:
         return [...position.toArray(), position.distanceTo(target), ...target.toArray()]; }"""
 
     def test_a_finger_turns_the_view(self, browser: Page) -> None:
-        browser.ask("() => replay.page.frame.pane('cell')")
+        pane(browser, "cell")
         x, y = middle(browser, ".stage canvas")
         before = browser.ask(self.LOOK)
         Fingers(browser).move(((x, y), (x + 90, y + 20)))
@@ -73,7 +79,7 @@ class TestNet:
     VIEW = "() => replay.page.net.window.view"
 
     def test_fingers_move_and_enlarge_it(self, browser: Page) -> None:
-        browser.ask("() => replay.page.frame.pane('net')")
+        pane(browser, "net")
         x, y = middle(browser, "#net .sheet")
         at = "([x, y]) => { const p = replay.page.net.window.point({clientX: x, clientY: y}); return [p.x, p.y]; }"
         before, held = browser.ask(self.VIEW), browser.ask(at, [x, y])
@@ -87,7 +93,7 @@ class TestNet:
         near = browser.ask(self.VIEW)
         assert near[2] == pytest.approx(view[2] * 80 / 200, rel=0.12)
         browser.page.get_by_role("button", name="Fit").tap()
-        assert browser.ask("() => replay.page.net.window.isFitted")
+        browser.wait("replay.page.net.window.isFitted")
 
     def test_a_tap_is_a_click(self, browser: Page) -> None:
         browser.ask("() => (replay.seek(4), replay.page.net.pin(1))")
@@ -95,14 +101,12 @@ class TestNet:
             "() => { const n = replay.page.net; return n.net.transitions.find((t) => t.instance === n.current).id; }"
         )
         browser.page.locator(f"#net [data-id='{node}']").first.tap()
-        assert (
-            browser.ask("() => replay.page.net.net.transitions[replay.page.transition].instance")
-            == 1
-        )
+        browser.wait("replay.page.net.net.transitions[replay.page.transition]?.instance === 1")
 
 
 def test_keys_choose_after_a_finger_has_moved_the_page(browser: Page) -> None:
-    browser.ask("() => (replay.page.frame.pane('net'), replay.page.net.pin(1))")
+    pane(browser, "net")
+    browser.ask("() => replay.page.net.pin(1)")
     x, y = middle(browser, "#net .sheet")
     Fingers(browser).move(((x, y), (x + 20, y)))
     browser.ask("() => void (replay.page.transition = -1)")
@@ -117,7 +121,7 @@ def test_keys_choose_after_a_finger_has_moved_the_page(browser: Page) -> None:
 
 
 def test_a_finger_takes_the_cursor_along(browser: Page) -> None:
-    browser.ask("() => replay.page.frame.pane('timeline')")
+    pane(browser, "timeline")
     box = browser.page.locator("#timeline canvas").first.bounding_box()
     y = box["y"] + 60
     x = "t => replay.page.timeline.x(t)"

@@ -14,11 +14,12 @@ from typing import Any
 import pytest
 
 from helpers.browser import launched, opened
-from helpers.lively import HOSTILE, hostile
+from helpers.lively import HOSTILE, LAST_S, hostile
 from helpers.played import PATIENCE_S, Refused, Served, Talk
-from helpers.processes import pn2code
+from helpers.processes import Talking, pn2code
 from helpers.watched import Played, minimal
 from pn2code.channels import Status
+from pn2code.live import watched, watchserver
 
 
 @pytest.fixture(scope="module")
@@ -30,22 +31,17 @@ def chromium() -> Iterator[Any]:
 
 @contextmanager
 def watching(folder: Path, cell: Path) -> Iterator[Served]:
-    command = [
-        sys.executable, "-m", "pn2code", "watch", str(folder), "--cell", str(cell), "--no-browser",
-    ]  # fmt: skip
-    process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    )  # fmt: skip
+    def patiently() -> None:
+        watched.LOST_S = watchserver._LAST_S = LAST_S
+
+    process = Talking("watch", folder, "--cell", cell, "--no-browser", prepare=patiently)
     try:
-        assert process.stdout is not None and process.stderr is not None
         line = process.stdout.readline()
         assert "http://" in line, line + process.stderr.read()
         yield Served(process, line.split()[-1])
     finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-        process.communicate(timeout=PATIENCE_S)
+        process.signal(signal.SIGINT)
+        process.communicate(PATIENCE_S)
 
 
 def test_a_cell_is_seen_from_before_its_start_to_after_its_end(
@@ -75,8 +71,9 @@ def test_a_cell_is_seen_from_before_its_start_to_after_its_end(
         assert served.get(f"/{served.token}/", host="evil.example")[0] == 421
         assert served.get(f"/{served.token}/..%2f..%2fetc/passwd")[0] == 404
         # The connection goes and comes, and nothing is lost meanwhile.
+        browser.listen("#said")
         browser.ask("() => live.link.socket.close()")
-        page.get_by_text("The connection is lost").wait_for()
+        browser.hear("The connection is lost")
         played.accept(1)
         played.report(1)
         played.placed(1)

@@ -12,7 +12,7 @@ import pytest
 
 from helpers.browser import launched, opened
 from helpers.door_cell import NET, TOML, door_cell
-from helpers.lively import running
+from helpers.lively import Person, running, token_of
 from helpers.processes import pn2code
 from helpers.robot_cells import nowhere
 from pn2code.cli.watch import _cell as watched_cell
@@ -126,12 +126,18 @@ def test_a_broken_zone_is_lit_on_the_page_when_it_is_broken(tmp_path: Path) -> N
 def test_a_zone_is_lit_on_the_live_page_as_soon_as_it_is_broken(tmp_path: Path) -> None:
     folder = door_cell(tmp_path / "cell", NET, TOML + FRONT)
     with (
-        running(folder, tmp_path / "run", "--speed", "0.5") as run,
         launched() as browser,
+        running(folder, tmp_path / "run", "--speed", "0.5", "--intervene") as run,
+        Person(run) as person,
         opened(browser, viewport=SMALL) as shown,
     ):
+        # Somebody holds the robot until the page is there.
+        person.join(token_of(run))
+        person.act("hold", party="arm")
+        person.until(lambda hand: hand["held"])
         shown.page.goto(run.url)
         shown.page.wait_for_selector("body[data-ready=true]")
+        person.act("go", party="arm")
         shown.page.get_by_text("The run has ended").wait_for()
         shown.wait("live.page.clock.t >= live.page.run.end - 1e-9")
         shown.wait(f"String(({COLOURS.replace('replay', 'live')})()) === 'd55e00,0072b2'")

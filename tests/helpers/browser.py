@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import shutil
 from collections.abc import Iterator, Sequence
@@ -15,7 +16,8 @@ from typing import Any
 
 import pytest
 
-NAMES = ("chromium", "chromium-browser", "google-chrome")
+NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+"""The first has no windows, and takes half the time of the others for the same pages."""
 ARGUMENTS = (
     "--no-sandbox",  # containers run as root, and the pages are our own
     "--enable-unsafe-swiftshader",  # WebGL without a GPU
@@ -24,7 +26,8 @@ ARGUMENTS = (
 )
 PLAIN = ("--no-sandbox", "--enable-unsafe-swiftshader")
 """Without a GPU, and otherwise as the browser decides: it draws the page itself without SwiftShader then."""
-PATIENCE_MS = 40_000
+PATIENCE_MS = 240_000
+"""Ends what hangs."""
 
 
 def chromium() -> str:
@@ -48,7 +51,9 @@ def launched(arguments: Sequence[str] = ARGUMENTS) -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=program, args=list(arguments))
+        browser = play.chromium.launch(
+            executable_path=program, args=list(arguments), timeout=PATIENCE_MS
+        )
         try:
             yield browser
         finally:
@@ -102,13 +107,34 @@ class Page:
 
     def wait(self, condition: str) -> None:
         """Until a condition holds (the page's own policy forbids Playwright's way to wait); an error if it does not."""
-        most = 3 * PATIENCE_MS
+        most = PATIENCE_MS
         self.ask(
             f"""() => new Promise((done, fail) => {{
               setTimeout(() => fail(new Error("{most} ms have not been enough")), {most});
               (function f() {{ ({condition}) ? done() : requestAnimationFrame(f) }})();
             }})"""
         )
+
+    def settled(self) -> None:
+        """Until the page has taken what has happened: two frames, so that it has seen sizes, and drawn."""
+        self.ask(
+            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )
+
+    def listen(self, selector: str) -> None:
+        """From now on the page keeps the texts of an element, so that none of them can be there too shortly."""
+        self.ask(
+            """(selector) => {
+              const [node, kept] = [document.querySelector(selector), (window.kept = [])];
+              const options = { childList: true, characterData: true, subtree: true };
+              new MutationObserver(() => kept.push(node.textContent)).observe(node, options);
+            }""",
+            selector,
+        )
+
+    def hear(self, text: str) -> None:
+        """Waits until the element of `listen` has said something."""
+        self.wait(f"window.kept.some((said) => said.includes({json.dumps(text)}))")
 
     def ask(self, script: str, value: Any = None) -> Any:
         """The value of a script."""

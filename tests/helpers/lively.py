@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-import re
+import os
 import shutil
 import socket
+import subprocess
+import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from helpers.played import PATIENCE_S, Served, Talk
-from helpers.processes import Talking
+from helpers.processes import Child, Talking
+from pn2code.live import server, tap, view
 
 HOSTILE = "<img src=x onerror=alert(1)>"
 
@@ -41,12 +45,69 @@ class Running(Served):
         return self.process.wait(), output + errors
 
 
+class ForkedServer(Child):
+    """The server of a live page as a fork of the run: what the run uses of `subprocess.Popen`.
+
+    It goes as fast as the run. Behind all that a busy machine does it would take minutes to begin.
+    """
+
+    def __init__(
+        self, command: Sequence[str], *, stdin: int, stdout: int, pass_fds: tuple[int]
+    ) -> None:
+        (number,) = pass_fds
+        assert command[1:] == ["-P", "-m", "pn2code.live.server", str(number)]
+        assert stdin == stdout == subprocess.PIPE
+        (said, say), (hear, heard) = os.pipe(), os.pipe()
+
+        def body() -> int:
+            os.dup2(said, 0)
+            os.closerange(3, number)
+            os.closerange(number + 1, 1 << 16)
+            sys.stdin = open(0, encoding="utf-8")  # noqa: SIM115 - for as long as the process lives
+            server._NICE = 0
+            server.main([str(number)])
+            return 0
+
+        super().__init__(body, heard)
+        os.close(said)
+        os.close(heard)
+        self.stdin = open(say, "wb")  # noqa: SIM115, PTH123 - closed by the run
+        self.stdout = open(hear, "rb")  # noqa: SIM115, PTH123
+
+    def wait(self, timeout: float = PATIENCE_S) -> int:
+        """The exit code."""
+        try:
+            return super().wait(timeout)
+        except TimeoutError as problem:
+            raise subprocess.TimeoutExpired("server", timeout) from problem
+
+
+LAST_S = 60.0
+
+
+def _patiently() -> None:
+    """In the process of a run: its server and its pages may be slow."""
+    view._BUILDING_S = view._END_S = server.LAST_S = tap.LAST_S = LAST_S
+
+
+def _forking() -> None:
+    _patiently()
+    own = SimpleNamespace(
+        Popen=ForkedServer, PIPE=subprocess.PIPE, TimeoutExpired=subprocess.TimeoutExpired
+    )
+    view.subprocess = own  # type: ignore[assignment]
+
+
 @contextmanager
-def running(cell: Path, out: Path, *arguments: str) -> Iterator[Running]:
-    """A cell that runs, with the fake backend."""
+def running(cell: Path, out: Path, *arguments: str, is_forking: bool = True) -> Iterator[Running]:
+    """A cell that runs, with the fake backend.
+
+    Args:
+        is_forking: the server is a fork of the run; otherwise it is what users have.
+    """
     process = Talking(
         "run", cell, "--realtime", "--live", "--backend", "fake", "--no-pictures", "--unchecked", "-o", out, *arguments,
-        environment={"COLUMNS": "200"},
+        environment={"COLUMNS": "200"}, prepare=_forking if is_forking else _patiently,
     )  # fmt: skip
     try:
         yield Running(process, out)
@@ -105,11 +166,19 @@ class Person(Talk):
 
 def hostile(example: Path, folder: Path) -> Path:
     """The smallest cell with names that would be markup, if they were not texts."""
+    name = HOSTILE.replace("<", "&lt;").replace(">", "&gt;")
+    return _changed(example, folder, "<text>Accept</text>", f"<text>{name}</text>")
+
+
+def endless(example: Path, folder: Path) -> Path:
+    """The smallest cell, which begins anew after its last part: it ends when it is ended, however long that takes."""
+    return _changed(example, folder, ">n + 1</text>", ">n mod 3 + 1</text>")
+
+
+def _changed(example: Path, folder: Path, old: str, new: str) -> Path:
     shutil.copytree(example, folder)
     net = folder / "cell.cpn"
     text = net.read_text(encoding="utf-8")
-    name = HOSTILE.replace("<", "&lt;").replace(">", "&gt;")
-    changed = re.sub(r"<text>Accept</text>", f"<text>{name}</text>", text)
-    assert changed != text
-    net.write_text(changed, encoding="utf-8")
+    assert text.count(old) == 1
+    net.write_text(text.replace(old, new), encoding="utf-8")
     return folder

@@ -34,7 +34,7 @@ from pn2code.play.session import MOST_BYTES, Session
 from pn2code.play.typed_texts import Typist
 from pn2code.semantics.game.report import places
 
-PATIENCE_S = 60.0
+PATIENCE_S = 600.0
 
 
 def loaded(net: Path) -> Loaded:

@@ -146,7 +146,10 @@ class Talking(Child):
     """
 
     def __init__(
-        self, *arguments: str | Path, environment: Mapping[str, str] | None = None
+        self,
+        *arguments: str | Path,
+        environment: Mapping[str, str] | None = None,
+        prepare: Callable[[], None] = lambda: None,
     ) -> None:
         (out, out_end), (err, err_end) = os.pipe(), os.pipe()
 
@@ -155,6 +158,7 @@ class Talking(Child):
             for number, name in ((1, "stdout"), (2, "stderr")):
                 setattr(sys, name, open(number, "w", buffering=1, encoding="utf-8", closefd=False))  # noqa: SIM115
             os.environ.update(environment or {})
+            prepare()
             sys.argv = ["pn2code", *map(str, arguments)]
             play()
 

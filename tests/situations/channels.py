@@ -292,7 +292,7 @@ def answers_in_real_time(lab: Lab) -> None:
     for poll_ms in (None, 1.0):
         started, shared = playing(lab, poll_ms=poll_ms)
         with started as supervisor, SharedDirectory(shared, "robot1", SPECS) as robot:
-            assert robot.await_supervisor(60.0)
+            assert robot.await_supervisor(600.0)
             await_command(supervisor, shared)
             robot.clear("command")
             assert isinstance(robot.write("answer", (1,)), Written)

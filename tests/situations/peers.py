@@ -27,7 +27,7 @@ def cell(
         assert supervisor.step(0.0).stopped is None
         try:
             for side in sides:
-                assert side.await_supervisor(60.0)
+                assert side.await_supervisor(600.0)
             yield supervisor, shared, sides
         finally:
             for side in sides:
@@ -38,7 +38,7 @@ def stopped(supervisor: SupervisorProcess, shared: Path, code: int, *words: str)
     """The next step stops it."""
     result = supervisor.step(1.0)
     assert result.stopped is not None, result
-    end = supervisor.wait(60.0)
+    end = supervisor.wait(600.0)
     Done(end.code, "", end.stderr, shared).stopped(code, *words)
 
 
@@ -81,7 +81,7 @@ def a_last_message_on_its_way(lab: Lab) -> None:
         first.set_status(Status.FINISHED)
         (shared / "answer.robcad").write_text("1\n")
         assert supervisor.step(0.5).finished
-        assert supervisor.wait(60.0).code == 0
+        assert supervisor.wait(600.0).code == 0
 
 
 @situation

@@ -78,7 +78,7 @@ def in_lockstep(lab: Lab) -> None:
     folder = lab.fresh()
     with lab.started("rivet", folder, lockstep=True) as supervisor:
         robots = [Robot(folder / "shared", n) for n in (1, 2)]
-        assert all(r.files.await_supervisor(60.0) for r in robots)
+        assert all(r.files.await_supervisor(600.0) for r in robots)
         t = 0.0
         while not (result := supervisor.step(t)).finished:
             assert result.stopped is None
@@ -98,7 +98,7 @@ def in_real_time(lab: Lab) -> None:
         folder = lab.fresh()
         with lab.started("rivet", folder, poll_ms=poll_ms) as supervisor:
             robots = [Robot(folder / "shared", n) for n in (1, 2)]
-            assert all(r.files.await_supervisor(60.0) for r in robots)
+            assert all(r.files.await_supervisor(600.0) for r in robots)
             limit = time.monotonic() + DEADLINE_S
             while supervisor.running:
                 moved = [r.turn() for r in robots]

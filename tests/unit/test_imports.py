@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+
+from helpers.statements import statements
 
 # package -> the packages of ours that it may import
 ALLOWED: dict[str, set[str]] = {
@@ -93,14 +96,17 @@ def modules(root: Path) -> Iterator[tuple[Path, str]]:
         yield path, relative.parts[0] if len(relative.parts) > 1 else relative.stem
 
 
-def imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+@cache
+def imported(path: Path) -> list[str]:
+    found = []
+    for node in statements(ast.parse(path.read_text(encoding="utf-8")).body):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
+            found.append(node.module)
             if node.module == "pn2code":
-                yield from (f"pn2code.{alias.name}" for alias in node.names)
+                found += [f"pn2code.{alias.name}" for alias in node.names]
+    return found
 
 
 def test_imports_run_one_way(root: Path) -> None:

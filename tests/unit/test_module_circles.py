@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from helpers.statements import blocks
+
 
 def modules_of(base: Path) -> dict[str, Path]:
     """Name -> file, of all modules below a folder."""
@@ -31,7 +33,7 @@ def loaded(nodes: Iterable[ast.AST]) -> Iterator[ast.Import | ast.ImportFrom]:
         elif isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
             yield from loaded(node.orelse)
         else:
-            yield from loaded(ast.iter_child_nodes(node))
+            yield from loaded(blocks(node))
 
 
 def graph(modules: dict[str, Path], root: str) -> dict[str, set[str]]:

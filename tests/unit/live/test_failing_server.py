@@ -22,7 +22,7 @@ def broken() -> Iterator[Any]:
 
 def test_it_stays_until_the_run_has_ended(capfd: pytest.CaptureFixture[str]) -> None:
     run_has_ended, over = threading.Event(), threading.Event()
-    server = Server(Start(1, "t", "s"), broken(), lambda: None, lambda: run_has_ended.wait(60.0))
+    server = Server(Start(1, "t", "s"), broken(), lambda: None, lambda: run_has_ended.wait(600.0))
 
     async def page() -> list[bool]:
         server.begin(over.set)

@@ -36,7 +36,7 @@ def test_a_reader_that_does_not_read_delays_nobody(pipe: Any) -> None:
     found: list[Any] = []
     reader = threading.Thread(target=lambda: found.append(taken(stream)))
     reader.start()
-    assert handing.finish(60.0)
+    assert handing.finish(600.0)
     reader.join()
     assert found == [large]
     assert handing.is_free()
@@ -48,7 +48,7 @@ def test_a_reader_that_has_gone_is_noticed(pipe: Any) -> None:
     stream.close()
     handing.give("nobody hears this")
     assert handing.is_broken and not handing.is_free()
-    assert not handing.finish(60.0)
+    assert not handing.finish(600.0)
 
 
 def test_what_is_cut_off_is_nothing(pipe: Any) -> None:

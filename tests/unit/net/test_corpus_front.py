@@ -17,7 +17,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import flatten
-from pn2code.net.front import examine, load
+from pn2code.net.front import Examined, examine
 from pn2code.net.instances import expand
 from pn2code.net.link import link
 from pn2code.reading import codes
@@ -31,9 +31,14 @@ SUITE_AGREEMENT = 53
 
 
 @cache
-def loaded(path: Path) -> tuple[FlatNet | None, Diagnostics]:
+def examined(path: Path) -> tuple[Examined, Diagnostics]:
     d = Diagnostics()
-    return load(path, d), d
+    return examine(path, d), d
+
+
+def loaded(path: Path) -> tuple[FlatNet | None, Diagnostics]:
+    found, d = examined(path)
+    return found.flat, d
 
 
 def corpus(shared: Path) -> list[tuple[Path, dict[str, Any]]]:
@@ -133,13 +138,10 @@ def test_place_instances_are_those_of_the_real_tool(shared: Path) -> None:
     """Ids and instance numbers; the real tool lists fusion sets beside their members."""
     compared = 0
     for path, answer in corpus(shared):
-        net, _ = loaded(path)
+        found, _ = examined(path)
+        net, document, typed = found.flat, found.document, found.typed
         if net is None or not answer or not answer["initial_marking"]:
             continue
-        d = Diagnostics()
-        document = read(path, d)
-        linked = link(document, d) if document else None
-        typed = check(linked, d) if linked else None
         assert document is not None and typed is not None
         numbers = {i.path: i.number for i in expand(typed)}
         ours = {(i, numbers[path]) for p in net.places for i, path in p.member_ids}

@@ -187,7 +187,7 @@ def test_a_page_that_is_loaded_again_while_something_goes_on_is_told_everything(
             raise WebSocketDisconnect
 
     def going_on() -> None:
-        assert gate.wait(60)
+        assert gate.wait(600)
         player.answer({"do": "fire", "transition": 0})
 
     async def reload(worker: ThreadPoolExecutor) -> Reloaded:
