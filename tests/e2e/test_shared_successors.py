@@ -43,14 +43,15 @@ def ring(transitions: int, *more: str) -> str:
     return "\n".join([*lines, *more])
 
 
-def test_it_is_one_function_for_those_that_touch_counters_only() -> None:
+def test_it_is_one_function_for_all_transitions() -> None:
+    """Also for those with texts, whose places are no counters."""
     net = flat(ring(FEW + 2))
     files = programs.generated(net, {}, Sizes.start(net, {}), Diagnostics())
     assert files is not None
     text = next(f.text for f in files if f.path == "net.c")
     own = re.findall(r"^static bool T(\d+)_succeed\(", text, re.MULTILINE)
-    assert [int(number) % 5 for number in own] == [4] * 8  # those with texts
-    assert text.count(".successors = net_successors") == FEW + 2 - 8
+    assert own == []
+    assert text.count(".successors = net_successors") == FEW + 2
 
 
 def test_a_small_net_has_none() -> None:

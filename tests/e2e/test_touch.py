@@ -102,6 +102,8 @@ class TestNet:
         )
         browser.page.locator(f"#net [data-id='{node}']").first.tap()
         browser.wait("replay.page.net.net.transitions[replay.page.transition]?.instance === 1")
+        chosen = "() => replay.page.net.net.transitions[replay.page.transition].id"
+        assert browser.ask(chosen) == node
 
 
 def test_keys_choose_after_a_finger_has_moved_the_page(browser: Page) -> None:

@@ -36,6 +36,7 @@ REGISTERING = (
     "pn2code.monitors.codes",
     "pn2code.net.codes",
     "pn2code.pnml.codes",
+    "pn2code.text_form.codes",
     "pn2code.reading.codes",
     "pn2code.robot.codes",
     "pn2code.run.cell",

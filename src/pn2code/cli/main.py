@@ -44,7 +44,7 @@ VERBS = {
     "show": "Write a run as one HTML page that shows the net, the arms, the messages and the time together.",
     "report": "Check, draw, verify, generate, compare and run a cell, and write a report of all of it.",
     "draw": "Draw the pages of a net. Elements with errors are red.",
-    "convert": "Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools.",
+    "convert": "Convert a net to PNML, to a Promela model for SPIN, to text, or to a net of CPN Tools.",
     "contest": "Answer an examination of the Model Checking Contest, in its own words.",
     "cell": "Print what a cell.toml may say: all sections and keys, or a JSON Schema of them.",
     "dump": "Print the net as it is after a stage of the pipeline.",

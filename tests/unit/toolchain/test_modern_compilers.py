@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from pn2code.emission import c_flags
+
 REFUSED = (
     "implicit-function-declaration",
     "implicit-int",
@@ -26,7 +28,13 @@ def test_each_file_declares_what_it_calls(compiler: str, root: Path) -> None:
     files = sorted((runtime / "src").rglob("*.c"))
     assert len(files) > 50
     done = subprocess.run(
-        [compiler, "-std=c11", "-D_GNU_SOURCE", "-fsyntax-only", *(f"-Werror={x}" for x in REFUSED)]
+        [
+            compiler,
+            c_flags.STANDARD,
+            "-D_GNU_SOURCE",
+            "-fsyntax-only",
+            *(f"-Werror={x}" for x in REFUSED),
+        ]
         + [f"-I{folder}" for folder in includes]
         + [str(file) for file in files],
         capture_output=True,
