@@ -28,9 +28,12 @@ from pn2code.text_form.codes import UNSUPPORTED_IN_TEXT
 from pn2code.text_form.colsets import SIMPLE
 from pn2code.text_form.names import written
 from pn2code.text_form.pages import ARCS, PORTS
-from pn2code.text_form.scan import open_comments
+from pn2code.text_form.scan import Open, after
 
 _INDENT = "  "
+_DEEPEST = 200
+"""Columns that a line of a text stands deeper than its first one, at most."""
+
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
 _WORDS_OF_PORTS = {port: word for word, port in PORTS.items()}
 _NOTE = re.compile(r"#(\s+|$)")
@@ -71,6 +74,10 @@ class _Writer:
                 hint="keep the .cpn file for them",
             )
         self.unique([(p.name, p.origin) for p in self.of.pages], "page")
+        self.unique([(f.name, f.origin) for f in self.of.fusions if f.members], "fusion set")
+        for fusion in self.of.fusions:
+            if not fusion.name and fusion.members:
+                self.cannot("a fusion set has no name", fusion.origin, "give it one")
         for page in self.of.pages:
             yield ""
             yield from self.page(page)
@@ -95,7 +102,7 @@ class _Writer:
     def items(self, block: RawBlock, indent: str) -> Iterator[str]:
         for item in block.items:
             if isinstance(item, RawBlock):
-                name = " ".join(item.name.split())
+                name = " ".join(item.name.split()).replace("(*", "( *")
                 yield f"{indent}block {name or '-'}"
                 yield from self.items(item, indent + _INDENT)
             else:
@@ -214,22 +221,24 @@ def _text(indent: str, head: str, text: str) -> Iterator[str]:
     )  # a declaration without a word before it: its first line is where it begins
     lines = more if own else [first, *more]
     yield f"{indent}{head.rstrip()}" if not own else f"{indent}{first}"
-    comments = open_comments(first) if own else 0
+    state = after(first.strip(), Open()) if own else Open()
     least = min((len(x) - len(x.lstrip()) for x in lines), default=0)
     if not own:  # the first line stands where its text did, which is not known any more
         least = min((len(x) - len(x.lstrip()) for x in more), default=0)
         lines = [first, *(x[least:] for x in more)]
         least = 0
     for line in lines:
-        shown = line[least:] if not comments else line.lstrip()
+        text = line.lstrip()
+        blanks = min(len(line) - len(text) - least, _DEEPEST)
+        shown = text if state.comments else " " * max(0, blanks) + text
         shown = _NOTE.sub("#", shown.lstrip(), count=1) if shown.lstrip().startswith("#") else shown
         yield f"{indent}{_INDENT}{shown}".rstrip()
-        comments = open_comments(line, comments)
+        state = after(line.strip(), state)
 
 
 def colset(item: RawColset) -> str:
     """`colset NAME = DEFINITION`."""
-    texts = [" ".join(t.text.split()) for t in item.texts]
+    texts = [" ".join(x.strip() for x in t.text.split("\n")) for t in item.texts]
     ids = ", ".join(item.ids)
     body: str = item.kind
     match item.kind:
