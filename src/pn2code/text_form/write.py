@@ -28,12 +28,17 @@ from pn2code.text_form.codes import UNSUPPORTED_IN_TEXT
 from pn2code.text_form.colsets import SIMPLE
 from pn2code.text_form.names import written
 from pn2code.text_form.pages import ARCS, PORTS
+from pn2code.text_form.read import PRIORITIES, STANDARD
 from pn2code.text_form.scan import Open, after
 
 _INDENT = "  "
 _DEEPEST = 200
 """Columns that a line of a text stands deeper than its first one, at most."""
 
+_STANDARD = [
+    *(f"colset {kind.upper()} = {kind};" for kind in STANDARD),
+    *(f"val {name} = {value};" for name, value in PRIORITIES.items()),
+]
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
 _WORDS_OF_PORTS = {port: word for word, port in PORTS.items()}
 _NOTE = re.compile(r"#(\s+|$)")
@@ -100,7 +105,13 @@ class _Writer:
     # --- declarations ----------------------------------------------------------------------------
 
     def items(self, block: RawBlock, indent: str) -> Iterator[str]:
-        for item in block.items:
+        left = list(block.items)[::-1]
+        while left:
+            if _are_standard(left[: -len(_STANDARD) - 1 : -1]):
+                del left[-len(_STANDARD) :]
+                yield f"{indent}standard"
+                continue
+            item = left.pop()
             if isinstance(item, RawBlock):
                 name = " ".join(item.name.split()).replace("(*", "( *")
                 yield f"{indent}block {name or '-'}"
@@ -208,6 +219,17 @@ class _Writer:
                 )
         assigned = f" ({', '.join(pairs)})" if pairs else ""
         return f"{_INDENT}subst {written(t.name)} = {written(target)}{assigned}"
+
+
+def _are_standard(items: list[RawBlock | RawDeclaration]) -> bool:
+    """Whether these are what `standard` declares."""
+    written = []
+    for item in items:
+        if isinstance(item, RawColset):
+            written.append(f"{colset(item)};")
+        elif isinstance(item, RawMl):
+            written.append(item.text.text.strip())
+    return written == _STANDARD
 
 
 def _text(indent: str, head: str, text: str) -> Iterator[str]:

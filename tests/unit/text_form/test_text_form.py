@@ -157,6 +157,15 @@ def test_written_and_read_it_is_the_same() -> None:
     assert written(text(once)) == once, "a text that was written is written in the same way again"
 
 
+def test_the_standard_declarations_are_written_as_one_word() -> None:
+    source = "val a = 1;\nstandard\nblock B\n  standard\n\npage Top\n"
+    assert written(text(source)) == source
+    d = Diagnostics()
+    document = text(source)
+    drawn_one = read_cpn(cpn.emit(document, positions(document)).encode(), "net.cpn", d)
+    assert drawn_one is not None and written(drawn_one) == source
+
+
 def test_as_a_file_of_cpn_tools_it_is_the_same() -> None:
     """With the same ids, so that a trace of the one is a trace of the other."""
     document = text(GOOD)
