@@ -20,7 +20,7 @@ def take(text: str, start: int = 0) -> tuple[str, int] | None:
     quoted, bare = found.groups()
     if quoted is None:
         return bare, found.end()
-    return " ".join(re.sub(r"\\(.)", r"\1", quoted).split()), found.end()
+    return " ".join(re.sub(r"\\([\"\\])", r"\1", quoted).split()), found.end()
 
 
 def written(name: str) -> str:

@@ -42,6 +42,9 @@ _STANDARD = [
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
 _WORDS_OF_PORTS = {port: word for word, port in PORTS.items()}
 _NOTE = re.compile(r"#(\s+|$)")
+_LONELY = re.compile(r"^[ ]*#\s*\n\s*", re.MULTILINE)
+"""A selector whose label stands on the next line; alone on its line it would be a note."""
+
 _DECLARES = re.compile(
     r"(val|fun|exception|datatype|abstype|type|eqtype|local|structure|signature|functor|infix|infixr|nonfix|open)\b(?!')|\(\*"
 )
@@ -234,7 +237,8 @@ def _are_standard(items: list[RawBlock | RawDeclaration]) -> bool:
 
 def _text(indent: str, head: str, text: str) -> Iterator[str]:
     """A head and a text, whose further lines are deeper. Blanks at the beginning of lines mean nothing in CPN ML."""
-    first, *more = (x for x in text.strip().expandtabs(8).split("\n") if x.strip())
+    joined = _LONELY.sub("#", text.strip().expandtabs(8))
+    first, *more = (x for x in joined.split("\n") if x.strip())
     if not more:
         yield f"{indent}{head}{first}"
         return

@@ -498,6 +498,20 @@ def test_an_arrow_needs_no_blanks() -> None:
     assert facts(text(written(document))) == facts(document)
 
 
+def test_a_selector_is_not_written_as_a_note() -> None:
+    document = text(
+        "page T\n  place A : INT\n  trans T\n    in A\n    out A : #\n      x p +\n      #y p\n"
+    )
+    [*_, arc] = text(written(document)).pages[0].arcs
+    assert arc.inscription is not None and arc.inscription.text.text == "#x p +\n#y p"
+
+
+def test_a_backslash_in_a_name_is_one() -> None:
+    document = text('page T\n  place "a\\b \\"c\\" \\\\d" : INT\n')
+    assert document.pages[0].places[0].name == 'a\\b "c" \\d'
+    assert facts(text(written(document))) == facts(document)
+
+
 def test_a_deeply_indented_text_is_read_again() -> None:
     net = f"net Net\n  standard\n  page Top\n    place A : INT = 1`1 ++{chr(10)}{' ' * 600}1`2"
     document = read_cpn(drawn(net), "net.cpn", Diagnostics())
