@@ -41,7 +41,7 @@ _STANDARD = [
 ]
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
 _WORDS_OF_PORTS = {port: word for word, port in PORTS.items()}
-_NOTE = re.compile(r"#(\s+|$)")
+_NOTE = re.compile(r"^#(\s+|$)")
 _LONELY = re.compile(r"^[ ]*#\s*\n\s*", re.MULTILINE)
 """A selector whose label stands on the next line; alone on its line it would be a note."""
 

@@ -506,6 +506,15 @@ def test_a_selector_is_not_written_as_a_note() -> None:
     assert arc.inscription is not None and arc.inscription.text.text == "#x p +\n#y p"
 
 
+def test_a_string_behind_a_selector_is_written_as_it_is() -> None:
+    document = text(
+        'fun shown p =\n  #name p ^ "# 1"\nfun other p =\n  f\n  #\tname p ^ "# 2";\npage T\n'
+    )
+    once = written(document)
+    assert '#name p ^ "# 1"' in once and '#name p ^ "# 2"' in once
+    assert facts(text(once)) == facts(document)
+
+
 def test_a_backslash_in_a_name_is_one() -> None:
     document = text('page T\n  place "a\\b \\"c\\" \\\\d" : INT\n')
     assert document.pages[0].places[0].name == 'a\\b "c" \\d'
