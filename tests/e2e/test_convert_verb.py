@@ -140,3 +140,20 @@ def test_files_that_cannot_be_written_are_refused_first(
         done = pn2code(verb, net, option, path, *more)
         assert done.returncode == 2
         assert "cannot write" in done.stderr
+
+
+def test_who_converts_the_net_of_a_cell_is_told_which_net_the_cell_has(tmp_path: Path) -> None:
+    """So that changes of the new file are not without effect, unseen."""
+    assert pn2code("init", tmp_path / "cell", "--template", "empty").returncode == 0
+    cell = tmp_path / "cell"
+    done = convert(cell / "cell.cpn", "-o", cell / "cell.cpnt")
+    assert done.returncode == 0
+    assert "the net of the cell is still `cell.cpn`" in done.stdout
+    assert 'write `file = "cell.cpnt"` under [net]' in done.stdout
+    toml = cell / "cell.toml"
+    toml.write_text(toml.read_text().replace('file = "cell.cpn"', 'file = "cell.cpnt"'))
+    done = convert(cell, "-o", cell / "cell.cpnt")
+    assert done.returncode == 0 and not done.stdout
+    (cell / "cell.cpnt").rename(cell / "other.cpnt")
+    done = pn2code("check", cell)
+    assert done.returncode != 0 and "which has `cell.cpn`, `other.cpnt`" in done.stderr

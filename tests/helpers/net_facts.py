@@ -51,7 +51,7 @@ def _declarations(block: RawBlock) -> Iterator[Facts]:
             case RawBlock():
                 yield "block", " ".join(item.name.split()) or "-", tuple(_declarations(item))
             case RawColset():
-                texts = tuple(map(_words, item.texts))
+                texts = tuple((_lines(t) or "").replace("\n", " ") for t in item.texts)
                 by = item.kind == "subset" and item.by_predicate
                 fields = (item.fields, texts, item.timed, item.declare, by)
                 yield "colset", item.name, item.kind, item.ids, *fields

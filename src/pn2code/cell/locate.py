@@ -46,9 +46,7 @@ def locate(
 
 def _only_net(folder: Path, d: Diagnostics) -> tuple[Path, None] | None:
     """The net of a folder that has no `cell.toml`: its only one."""
-    nets = sorted(
-        p for p in folder.iterdir() if p.suffix in (".cpn", ".cpnt", ".pnml") and p.is_file()
-    )
+    nets = _nets(folder)
     if len(nets) == 1:
         return nets[0], None
     names = ", ".join(f"`{p.name}`" for p in nets[:5]) + (", ..." if len(nets) > 5 else "")
@@ -63,15 +61,21 @@ def _only_net(folder: Path, d: Diagnostics) -> tuple[Path, None] | None:
     return None
 
 
+def _nets(folder: Path) -> list[Path]:
+    return sorted(
+        p for p in folder.iterdir() if p.suffix in (".cpn", ".cpnt", ".pnml") and p.is_file()
+    )
+
+
 def _has_net(config: CellConfig, d: Diagnostics) -> bool:
     """Whether the file that `[net] file` names is there."""
     if config.net_path.exists():
         return True
-    near = ", ".join(f"`{p.name}`" for p in sorted(config.folder.glob("*.cpn"))[:5])
+    near = ", ".join(f"`{p.name}`" for p in _nets(config.folder)[:5])
     d.error(
         codes.CELL_MISSING,
         f"there is no net `{config.net_path}`",
         config.locator.origin("net", "file"),
-        hint=f"`file` of section [net] names a file in the folder of cell.toml, which has {near or 'no .cpn file'}",
+        hint=f"`file` of section [net] names a file in the folder of cell.toml, which has {near or 'no net'}",
     )
     return False

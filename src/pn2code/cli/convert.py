@@ -155,6 +155,21 @@ def _convert(
     except OSError as problem:
         typer.echo(f"pn2code: cannot write `{output}`: {problem.strerror}", err=True)
         raise typer.Exit(Exit.USAGE) from None
+    if kind in (".cpn", ".cpnt") and form is not Format.JSON:
+        _say_which_net_a_cell_has(output)
+
+
+def _say_which_net_a_cell_has(output: Path) -> None:
+    """Changes of a net that the `cell.toml` beside it does not name would have no effect on the cell."""
+    from pn2code.cell.load import load
+
+    beside = output.parent / "cell.toml"
+    config = load(beside, Diagnostics()) if beside.is_file() else None
+    if config is not None and config.net_path.resolve() != output.resolve():
+        typer.echo(
+            f"wrote {output}; the net of the cell is still `{config.net_path.name}`: to change that, write "
+            f'`file = "{output.name}"` under [net] in {beside}'
+        )
 
 
 def _text(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import SourceText
 from pn2code.reading.document import RawColset, RawVar
-from pn2code.text_form.scan import first, parts, stripped
+from pn2code.text_form.scan import first, masked, parts, stripped, uncommented
 
 SIMPLE = ("unit", "bool", "int", "intinf", "time", "real", "string")
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
@@ -77,6 +77,7 @@ def piece(text: SourceText, start: int, end: int) -> SourceText:
 
 def variables(text: SourceText, identity: str) -> RawVar:
     """`var x, y : TYPE`, without the semicolon."""
+    text = replace(text, text=uncommented(text.text))
     whole = _Piece(text, *stripped(text.text, 0, len(text.text)))
     colon = first(whole.text, ":")
     if colon < 0:
@@ -93,6 +94,7 @@ def variables(text: SourceText, identity: str) -> RawVar:
 
 def colset(text: SourceText, identity: str) -> RawColset:
     """`colset NAME = DEFINITION [timed] [declare ...]`, without the semicolon."""
+    text = replace(text, text=uncommented(text.text))
     whole = _Piece(text, *stripped(text.text, 0, len(text.text)))
     equals = first(whole.text, "=")
     if equals < 0:
@@ -102,10 +104,11 @@ def colset(text: SourceText, identity: str) -> RawColset:
     whole = _Piece(replace(text, origin=origin), whole.start, whole.end)
     body = whole.part(equals + 1, len(whole.text))
     declared: tuple[str, ...] = ()
-    if (found := re.search(r"\sdeclare\s+([\w\s,']+)$", body.text)) is not None:
-        declared = tuple(x.strip() for x in found.group(1).split(","))
+    if (found := re.search(r"\sdeclare\s", masked(body.text))) is not None:
+        names = body.part(found.end(), len(body.text)).split(",")
+        declared = tuple(x.name() for x in names)
         body = body.part(0, found.start())
-    timed = re.search(r"(^|\s)timed$", body.text)
+    timed = re.search(r"(^|\s)timed$", masked(body.text))
     if timed is not None:
         body = body.part(0, timed.start())
     kind, ids, fields, texts, by = _definition(body)
@@ -141,7 +144,7 @@ def _definition(body: _Piece) -> _Definition:
         case "int" | "intinf" | "time" | "real" | "string":
             if before.text:
                 raise before.wrong(f"`{before.text}` is not expected here")
-            return word, [], [], _limits(limit), False
+            return word, [], [], _limits(limit, several=word == "string"), False
         case "with":
             return "enum", [p.name() for p in rest.split("|")], [], [], False
         case "index":
@@ -155,7 +158,7 @@ def _definition(body: _Piece) -> _Definition:
         case "list":
             return word, [before.name()], [], _limits(limit), False
         case "subset":
-            by = re.search(r"\s(by|with)\s", rest.text)
+            by = re.search(r"\s(by|with)\s", masked(rest.text))
             if by is None:
                 raise rest.wrong("a subset has a function after `by`, or a list after `with`")
             base, what = rest.part(0, by.start()), rest.part(by.end(), len(rest.text))
@@ -165,7 +168,7 @@ def _definition(body: _Piece) -> _Definition:
 
 def _with(rest: _Piece) -> tuple[_Piece, _Piece | None]:
     """What stands before and after `with`."""
-    found = re.search(r"(^|\s)with\s", rest.text)
+    found = re.search(r"(^|\s)with\s", masked(rest.text))
     if found is None:
         return rest, None
     return rest.part(0, found.start()), rest.part(found.end(), len(rest.text))
@@ -181,16 +184,21 @@ def _listed(limit: _Piece | None) -> list[str]:
     return [p.name() for p in limit.split(",")]
 
 
-def _limits(limit: _Piece | None, needed: _Piece | None = None) -> list[_Piece]:
-    """The bounds `a..b`, of texts also those of the length: `"a".."z" and 3..9`."""
+def _limits(
+    limit: _Piece | None, needed: _Piece | None = None, several: bool = False
+) -> list[_Piece]:
+    """The bounds `a..b`, of texts (`several`) also those of the length: `"a".."z" and 3..9`."""
     if limit is None:
         if needed is not None:
             raise needed.wrong("the bounds are missing: `with 1..3`")
         return []
     found: list[_Piece] = []
-    for one in re.split(r"\sand\s", limit.text):
-        start = limit.text.index(one, found[-1].end - limit.start if found else 0)
-        piece = limit.part(start, start + len(one))
+    between = [m.span() for m in re.finditer(r"\sand\s", masked(limit.text))]
+    if len(between) > several:
+        raise limit.wrong("more bounds than one `a..b`; strings have also those of their length")
+    starts, ends = [0, *(b for _, b in between)], [*(a for a, _ in between), len(limit.text)]
+    for start, end in zip(starts, ends, strict=True):
+        piece = limit.part(start, end)
         bounds = piece.split("..")
         if len(bounds) != 2 or not all(b.text for b in bounds):
             raise piece.wrong(f"bounds are written `1..9`, not `{piece.text}`")

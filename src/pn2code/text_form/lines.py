@@ -5,14 +5,20 @@ Texts in CPN ML keep where each of their lines stands, so that messages point in
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import field, replace
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin, SourceText
-from pn2code.text_form.scan import open_comments
+from pn2code.text_form.scan import Open, after
 
 _TAB = 8
+A_NOTE_INSIDE = (
+    "a line that begins with `#` stands inside a text of CPN ML",
+    "write comments inside a text as `(* ... *)`; a selector without a blank: `#x p`",
+)
+"""What is said of a note where it would leave a hole, and what to write."""
 
 
 @frozen
@@ -42,6 +48,11 @@ class Line:
         """Whether it is a comment of the file: `# ...`."""
         return not self.inside and (self.text == "#" or self.text.startswith("# "))
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether more than notes stands below it."""
+        return any(not x.is_note for x in self.below)
+
     def deeper(self) -> Iterator[Line]:
         """All deeper lines, in the order of the file."""
         todo = self.below[::-1]
@@ -55,18 +66,18 @@ def read(text: str) -> tuple[Line, Line | None]:
     """The lines of a file below one that is none, and the line in which a comment begins that never ends."""
     root = Line(0, 0, -1, "")
     stack = [root]
-    comments, opened = 0, None
+    state, opened = Open(), None
     for number, raw in enumerate(text.split("\n"), start=1):
         content = raw.strip()
         if not content:
             continue
         before = len(raw) - len(raw.lstrip())
         indent = len(raw[:before].expandtabs(_TAB))
-        line = Line(number, before + 1, indent, content, inside=comments > 0)
+        line = Line(number, before + 1, indent, content, inside=state.comments > 0)
         if line.is_note:  # it ends nothing, wherever it stands
             next(s for s in reversed(stack) if s.indent < indent).below.append(line)
             continue
-        if comments:
+        if state.comments:
             stack[-1].below.append(line)
         else:
             opened = line
@@ -74,8 +85,15 @@ def read(text: str) -> tuple[Line, Line | None]:
                 stack.pop()
             stack[-1].below.append(line)
             stack.append(line)
-        comments = open_comments(content, comments)
-    return root, opened if comments else None
+        state = after(content, state)
+    return root, opened if state.comments else None
+
+
+def notes_in(line: Line, notes: list[Line]) -> list[Line]:
+    """Those of the file's notes, in its order, that stand between a line and the end of what is deeper."""
+    last = max((x.number for x in line.deeper()), default=line.number)
+    begin = bisect_right(notes, line.number, key=lambda x: x.number)
+    return notes[begin : bisect_right(notes, last, key=lambda x: x.number)]
 
 
 def text_of(line: Line, start: int, origin: Origin) -> SourceText:

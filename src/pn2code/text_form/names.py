@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import re
 
-_BARE = re.compile(r'[^\s:=(),"]+')
-_NAME = re.compile(r'\s*(?:"((?:[^"\\]|\\.)*)"|([^\s:=(),"]+))')
+_WORD = r'(?:(?!->)[^\s:=(),;"\[\]{}])+'
+_BARE = re.compile(_WORD)
+_NAME = re.compile(rf'\s*(?:"((?:[^"\\]|\\.)*)"|({_WORD}))')
 
 
 def take(text: str, start: int = 0) -> tuple[str, int] | None:
-    """The name that begins at `start`, after white space, and where it ends; None if there is none."""
+    """The name that begins at `start`, after white space, and where it ends; None if there is none.
+
+    Blanks in a name count as in a `.cpn` file: as one, and not at its ends.
+    """
     found = _NAME.match(text, start)
     if found is None:
         return None
     quoted, bare = found.groups()
-    return bare if quoted is None else re.sub(r"\\(.)", r"\1", quoted), found.end()
+    if quoted is None:
+        return bare, found.end()
+    return " ".join(re.sub(r"\\([\"\\])", r"\1", quoted).split()), found.end()
 
 
 def written(name: str) -> str:

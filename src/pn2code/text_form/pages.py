@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
@@ -19,7 +19,7 @@ from pn2code.reading.document import (
 )
 from pn2code.text_form import names
 from pn2code.text_form.codes import TEXT_NAME, TEXT_SYNTAX
-from pn2code.text_form.lines import Line, text_of
+from pn2code.text_form.lines import A_NOTE_INSIDE, Line, notes_in, text_of
 from pn2code.text_form.scan import parts, stripped
 
 PORTS = {"in": "In", "out": "Out", "io": "I/O"}
@@ -61,13 +61,17 @@ class PageReader:
     Args:
         new: gives ids.
         wrong: reports a line that cannot be read.
+        notes: of the file, in its order.
     """
 
-    def __init__(self, file: str, d: Diagnostics, new: Callable[[], str], wrong: Wrong) -> None:
+    def __init__(
+        self, file: str, d: Diagnostics, new: Callable[[], str], wrong: Wrong, notes: list[Line]
+    ) -> None:
         self.file = file
         self.d = d
         self.new = new
         self.wrong = wrong
+        self.notes = notes
         self.by_name: dict[str, _Page] = {}
 
     def pages(self, lines: list[Line]) -> tuple[RawPage, ...]:
@@ -99,7 +103,7 @@ class PageReader:
                 case "subst":
                     self.substitution(page, one)
                 case _:
-                    hint = did_you_mean(one.word, ("place", "trans", "subst"), _PAGE)
+                    hint = _other(one, ("place", "trans", "subst"), _PAGE)
                     self.wrong(one, f"nothing on a page begins with `{one.word}`", hint)
         return page
 
@@ -131,9 +135,11 @@ class PageReader:
                 self.wrong(line, f"`{word[0]}` is not expected after the name of a place", _PLACE)
                 return
             value = names.take(line.text, word[1])
-            if value is None or (word[0] == "port" and value[0] not in PORTS):
+            if value is None or not value[0] or (word[0] == "port" and value[0] not in PORTS):
                 self.wrong(line, f"`{word[0]}` needs a word after it", _PLACE)
                 return
+            if port if word[0] == "port" else fusion:
+                self.wrong(line, f"place `{name}` has `{word[0]}` twice", "write one of them")
             if word[0] == "port":
                 port = PORTS[value[0]]
             else:
@@ -150,13 +156,15 @@ class PageReader:
                 self.wrong(
                     line, "a note has a line of its own", "write it above the place: `# ...`"
                 )
+            elif ";" in line.text[start:stop]:
+                self.wrong(line, "a place does not end with `;`", "leave it out")
             if start < stop:
                 kind = Inscription(SourceText(line.text[start:stop], where))
             at = end
             rest = line.text[at:]
         if rest.startswith("="):
             initial = self.inscription(line, at + 1, origin, "initial marking")
-        elif rest or line.below:
+        elif rest or line.goes_on:
             self.wrong(
                 line, "a place is written on one line, its initial marking after `=`", _PLACE
             )
@@ -168,13 +176,8 @@ class PageReader:
 
     def inscription(self, line: Line, start: int, base: Origin, part: str) -> Inscription | None:
         """The text from an offset on, with deeper lines; None if it is empty."""
-        for deeper in line.deeper():
-            if deeper.is_note:
-                self.wrong(
-                    deeper,
-                    "a line that begins with `#` stands inside a text of CPN ML",
-                    "write comments inside a text as `(* ... *)`; a selector without a blank: `#x p`",
-                )
+        for note in notes_in(line, self.notes):
+            self.wrong(note, *A_NOTE_INSIDE)
         text = text_of(line, start, replace(base, part=part))
         return Inscription(text) if text.text.strip() else None
 
@@ -199,7 +202,7 @@ class PageReader:
             elif word in ARCS:
                 self.arc(page, one, word, name, identity)
             else:
-                hint = did_you_mean(word, (*ARCS, *CLAUSES), _TRANS)
+                hint = _other(one, (*ARCS, *CLAUSES), _TRANS)
                 self.wrong(one, f"no arc and no clause of a transition begins with `{word}`", hint)
         page.transitions.append(
             RawTransition(
@@ -220,7 +223,7 @@ class PageReader:
         """`in PLACE : INSCRIPTION`."""
         found = names.take(line.text, len(word))
         rest = line.text[found[1] :].lstrip() if found else ""
-        if found is None or (rest and not rest.startswith(":")) or (line.below and not rest):
+        if found is None or (rest and not rest.startswith(":")) or (line.goes_on and not rest):
             self.wrong(line, "an arc names a place, and its inscription follows after `:`", _ARC)
             return
         place = self.place_of(page, found[0], line)
@@ -352,6 +355,13 @@ class PageReader:
             self.draw(page, one.line, orientation, (socket, one.made.name, one.made.id), None)
         origin = one.made.origin
         return replace(one.made, substitution=RawSubstitution(sub.id, tuple(found), origin))
+
+
+def _other(line: Line, words: Sequence[str], otherwise: str) -> str:
+    """What to write instead of a line that begins with none of these words."""
+    if line.text.startswith(("(*", "#", "//", "--")):
+        return "a note is a line that begins with `# `, a blank after it"
+    return did_you_mean(line.word, words, otherwise)
 
 
 def fusions_of(pages: tuple[RawPage, ...], new: Callable[[], str]) -> tuple[RawFusion, ...]:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, TooManyDiagnosticsError
@@ -37,10 +37,10 @@ from pn2code.reading.document import (
 from pn2code.text_form import colsets
 from pn2code.text_form.codes import TEXT_SYNTAX
 from pn2code.text_form.colsets import NotReadableError
-from pn2code.text_form.lines import Line, text_of
+from pn2code.text_form.lines import A_NOTE_INSIDE, Line, notes_in, text_of
 from pn2code.text_form.lines import read as lines_of
 from pn2code.text_form.pages import PageReader, fusions_of
-from pn2code.text_form.scan import first, parts, plain
+from pn2code.text_form.scan import first, masked, parts, plain
 
 STANDARD = ("unit", "bool", "int", "intinf", "time", "real", "string")
 """The colour sets of `standard`, whose names are these in capital letters: those of a new net in CPN Tools."""
@@ -50,11 +50,19 @@ _ML = frozenset(
     """val fun exception datatype abstype type eqtype local structure signature functor infix infixr nonfix
     open""".split()  # noqa: SIM905 - a list of words
 )
+_ONE_LINE = ("colset", "var", "globref")
+"""Several of these may stand on a line."""
+
 _DEEPEST = 400
 """Columns: blocks may stand within one another, but not without an end."""
 _HEADS = ("page", "colset", "var", "globref", "use", "block", "standard", "option", "ml")
 _GOES_ON = re.compile(r"[|)\]};]|(and|in|end|withtype)(?![\w'])")
 """So begin lines that continue a declaration in CPN ML though they are not deeper."""
+
+_NOTE = "a note is a line that begins with `# `, a blank after it"
+_BLOCK_WORDS = re.compile(r"(?<![\w'])(let|local|struct|sig|end)(?![\w'])")
+_UNPRINTED = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
+"""Characters that a file of CPN Tools cannot have."""
 
 _OPTIONS = {"realtimestamp": ("true", "false")}
 
@@ -85,6 +93,15 @@ def read_data(data: bytes, file: str, d: Diagnostics, *, partial: bool = False) 
             hint="let its name end in .cpn or .pnml",
         )
         return None
+    if (found := _UNPRINTED.search(text)) is not None:
+        start = text.rfind("\n", 0, found.start()) + 1
+        d.error(
+            TEXT_SYNTAX,
+            f"the file has the character U+{ord(found.group()):04X}, which is not printed",
+            Origin(file, text.count("\n", 0, start) + 1, found.start() - start + 1),
+            hint="remove it; in a string of CPN ML it is written with its number, `\\127`",
+        )
+        return None
     try:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
         document = _Reader(file, d).document(text, hashlib.sha256(data).hexdigest())
@@ -102,6 +119,7 @@ class _Reader:
         self.d = d
         self.count = 0
         self.options: dict[str, str] = {}
+        self.notes: list[Line] = []
 
     def new(self) -> str:
         """An id, as CPN Tools has them."""
@@ -129,10 +147,11 @@ class _Reader:
                 "a comment begins here that never ends",
                 "close it with `*)` where it ends",
             )
+        self.notes = [x for x in root.deeper() if x.is_note]
         lines = [x for x in root.below if not x.is_note]
         pages_of = [x for x in lines if x.word == "page"]
         items = self.items([x for x in lines if x.word != "page"], is_top=True)
-        reader = PageReader(self.file, self.d, self.new, self.wrong)
+        reader = PageReader(self.file, self.d, self.new, self.wrong, self.notes)
         pages = reader.pages(pages_of)
         if not pages:
             self.d.error(
@@ -163,16 +182,25 @@ class _Reader:
             word = line.word.rstrip(";")
             rest = line.text[len(word) :]
             if word == "block":
+                if "(*" in rest:
+                    self.wrong(line, "a block has a name, and nothing more on its line", _NOTE)
                 inside = self.items((x for x in line.below if not x.is_note), is_top=False)
                 found.append(RawBlock(rest.strip().strip('"'), tuple(inside)))
-            elif word == "standard" and not rest.strip(" ;"):
+            elif word == "standard":
+                if rest.strip(" ;") or line.goes_on:
+                    self.wrong(
+                        line,
+                        "`standard` stands on a line of its own, and nothing deeper below it",
+                        "write further declarations on lines that are as deep as it",
+                    )
                 found += self.standard(line)
             elif word == "option" and is_top:
                 self.option(line)
-            elif word in ("colset", "var", "globref"):
+            elif word in _ONE_LINE:
                 found += self.several(line)
             elif word == "use":
                 source = self.text(line, len(word), "use")
+                source = colsets.piece(source, 0, len(source.text.rstrip(" ;\n")))
                 found.append(RawUse(self.new(), source, source.origin))
             elif word == "ml":
                 found += self.ml(self.text(line, len(word), ""))
@@ -181,6 +209,8 @@ class _Reader:
             else:
                 known = (*_HEADS, *sorted(_ML)) if is_top else (*_HEADS[1:], *sorted(_ML))
                 near = "" if word in ("place", "trans", "subst") else did_you_mean(word, known)
+                if word.startswith(("#", "//", "--")):
+                    near = _NOTE
                 self.wrong(
                     line,
                     f"no declaration and no page begins with `{line.word}`",
@@ -197,13 +227,8 @@ class _Reader:
 
     def check_notes(self, line: Line) -> None:
         """Notes of the file cannot stand inside texts, where `#` is the selector of a record."""
-        for deeper in line.deeper():
-            if deeper.is_note:
-                self.wrong(
-                    deeper,
-                    "a line that begins with `#` stands inside a text of CPN ML",
-                    "write comments inside a text as `(* ... *)`; a selector without a blank: `#x p`",
-                )
+        for note in notes_in(line, self.notes):
+            self.wrong(note, *A_NOTE_INSIDE)
 
     def ml(self, source: SourceText) -> list[RawMl]:
         if not source.text.strip():
@@ -243,7 +268,7 @@ class _Reader:
         """Colour sets, variables and references, several on a line after semicolons."""
         whole = self.text(line, 0, "")
         found: list[RawDeclaration] = []
-        for start, end in parts(whole.text, ";"):
+        for start, end in _declared(whole.text):
             if not any(not c.isspace() for _, c, _ in plain(whole.text[start:end])):
                 continue  # nothing but comments
             piece = colsets.piece(whole, start, end)
@@ -277,16 +302,38 @@ class _Reader:
         return RawGlobref(self.new(), name, value, origin)
 
 
+def _declared(text: str) -> Iterator[tuple[int, int]]:
+    """Beginnings and ends of the declarations between semicolons, of which those in `let ... in ... end` are none."""
+    begin = None
+    for start, end in parts(text, ";"):
+        begin = start if begin is None else begin
+        words = _BLOCK_WORDS.findall(masked(text[begin:end]))
+        opened = sum(w in ("let", "local", "struct", "sig") for w in words)
+        if opened > words.count("end"):
+            continue
+        yield begin, end
+        begin = None
+    if begin is not None:
+        yield begin, len(text)
+
+
 def _continued(lines: Iterable[Line]) -> list[Line]:
     """The lines, each with those that go on with it though they are not deeper (`| f n = ...`, `end;`)."""
     found: list[Line] = []
     for line in lines:
-        before = found[-1].word if found else ""
-        if before in (*_ML, "ml") and _GOES_ON.match(line.text):
-            found[-1].below.append(line)
+        before = found[-1] if found else None
+        if before is not None and _GOES_ON.match(line.text) and _is_open(before):
+            before.below.append(line)
         else:
             found.append(line)
     return found
+
+
+def _is_open(line: Line) -> bool:
+    """Whether a line that is not deeper may go on with a declaration; colour sets and variables end with `;`."""
+    if line.word in _ONE_LINE:
+        return not [line, *line.deeper()][-1].text.endswith(";")
+    return line.word in _ML or line.word == "ml"
 
 
 def _counts(pages: tuple[RawPage, ...]) -> dict[str, int]:

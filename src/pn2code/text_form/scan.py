@@ -5,9 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-_SKIPPED = re.compile(r'#?"(?:[^"\\\n]|\\\s+\\|\\.)*"?', re.DOTALL)
+from pn2code.base.frozen import frozen
+
+_SKIPPED = re.compile(r'#?"(?:[^"\\\n]|\\\s+\\|\\.)*(")?', re.DOTALL)
 """A string or a character; one that is never closed ends with its line."""
 _COMMENT = re.compile(r"\(\*|\*\)")
+
+
+@frozen
+class Open:
+    """What is open at the end of a line: how many comments; whether a string goes on in the next line (`"abc \\`)."""
+
+    comments: int = 0
+    string: bool = False
 
 
 def plain(text: str) -> Iterator[tuple[int, str, int]]:
@@ -33,18 +43,45 @@ def plain(text: str) -> Iterator[tuple[int, str, int]]:
         at += 1
 
 
-def open_comments(text: str, before: int = 0) -> int:
-    """How many comments are open after a line, of which `before` were open when it began."""
-    at, comments = 0, before
-    while at < len(text):
-        mark = _COMMENT.match(text, at)
+def after(line: str, before: Open) -> Open:
+    """What is open after a line, which has no white space around it."""
+    if before.string and line.startswith("\\"):
+        line = '"' + line[1:]
+    at, comments = 0, before.comments
+    while at < len(line):
+        mark = _COMMENT.match(line, at)
         if mark is not None and (mark.group() == "(*" or comments):
             comments += 1 if mark.group() == "(*" else -1
             at = mark.end()
             continue
-        string = None if comments else _SKIPPED.match(text, at)
+        string = None if comments else _SKIPPED.match(line, at)
         at = string.end() if string is not None else at + 1
-    return comments
+        if string is not None and not string.group(1) and line[at:] == "\\":
+            return Open(string=True)
+    return Open(comments)
+
+
+def masked(text: str) -> str:
+    """The text with as many blanks for comments, and `"` for what stands in strings: words are looked for in it."""
+    return _SKIPPED.sub(lambda m: '"' * len(m.group()), uncommented(text))
+
+
+def uncommented(text: str) -> str:
+    """The text with as many blanks for comments."""
+    found = list(text)
+    at, comments = 0, 0
+    while at < len(text):
+        mark = _COMMENT.match(text, at)
+        if mark is not None and (mark.group() == "(*" or comments):
+            comments += 1 if mark.group() == "(*" else -1
+            found[at : mark.end()] = "  "
+            at = mark.end()
+            continue
+        string = None if comments else _SKIPPED.match(text, at)
+        if comments and not text[at].isspace():
+            found[at] = " "
+        at = string.end() if string is not None else at + 1
+    return "".join(found)
 
 
 def parts(text: str, separator: str) -> list[tuple[int, int]]:

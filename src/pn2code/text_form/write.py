@@ -28,12 +28,23 @@ from pn2code.text_form.codes import UNSUPPORTED_IN_TEXT
 from pn2code.text_form.colsets import SIMPLE
 from pn2code.text_form.names import written
 from pn2code.text_form.pages import ARCS, PORTS
-from pn2code.text_form.scan import open_comments
+from pn2code.text_form.read import PRIORITIES, STANDARD
+from pn2code.text_form.scan import Open, after
 
 _INDENT = "  "
+_DEEPEST = 200
+"""Columns that a line of a text stands deeper than its first one, at most."""
+
+_STANDARD = [
+    *(f"colset {kind.upper()} = {kind};" for kind in STANDARD),
+    *(f"val {name} = {value};" for name, value in PRIORITIES.items()),
+]
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
 _WORDS_OF_PORTS = {port: word for word, port in PORTS.items()}
-_NOTE = re.compile(r"#(\s+|$)")
+_NOTE = re.compile(r"^#(\s+|$)")
+_LONELY = re.compile(r"^[ ]*#\s*\n\s*", re.MULTILINE)
+"""A selector whose label stands on the next line; alone on its line it would be a note."""
+
 _DECLARES = re.compile(
     r"(val|fun|exception|datatype|abstype|type|eqtype|local|structure|signature|functor|infix|infixr|nonfix|open)\b(?!')|\(\*"
 )
@@ -71,6 +82,10 @@ class _Writer:
                 hint="keep the .cpn file for them",
             )
         self.unique([(p.name, p.origin) for p in self.of.pages], "page")
+        self.unique([(f.name, f.origin) for f in self.of.fusions if f.members], "fusion set")
+        for fusion in self.of.fusions:
+            if not fusion.name and fusion.members:
+                self.cannot("a fusion set has no name", fusion.origin, "give it one")
         for page in self.of.pages:
             yield ""
             yield from self.page(page)
@@ -93,9 +108,15 @@ class _Writer:
     # --- declarations ----------------------------------------------------------------------------
 
     def items(self, block: RawBlock, indent: str) -> Iterator[str]:
-        for item in block.items:
+        left = list(block.items)[::-1]
+        while left:
+            if _are_standard(left[: -len(_STANDARD) - 1 : -1]):
+                del left[-len(_STANDARD) :]
+                yield f"{indent}standard"
+                continue
+            item = left.pop()
             if isinstance(item, RawBlock):
-                name = " ".join(item.name.split())
+                name = " ".join(item.name.split()).replace("(*", "( *")
                 yield f"{indent}block {name or '-'}"
                 yield from self.items(item, indent + _INDENT)
             else:
@@ -203,9 +224,21 @@ class _Writer:
         return f"{_INDENT}subst {written(t.name)} = {written(target)}{assigned}"
 
 
+def _are_standard(items: list[RawBlock | RawDeclaration]) -> bool:
+    """Whether these are what `standard` declares."""
+    written = []
+    for item in items:
+        if isinstance(item, RawColset):
+            written.append(f"{colset(item)};")
+        elif isinstance(item, RawMl):
+            written.append(item.text.text.strip())
+    return written == _STANDARD
+
+
 def _text(indent: str, head: str, text: str) -> Iterator[str]:
     """A head and a text, whose further lines are deeper. Blanks at the beginning of lines mean nothing in CPN ML."""
-    first, *more = (x for x in text.strip().expandtabs(8).split("\n") if x.strip())
+    joined = _LONELY.sub("#", text.strip().expandtabs(8))
+    first, *more = (x for x in joined.split("\n") if x.strip())
     if not more:
         yield f"{indent}{head}{first}"
         return
@@ -214,22 +247,24 @@ def _text(indent: str, head: str, text: str) -> Iterator[str]:
     )  # a declaration without a word before it: its first line is where it begins
     lines = more if own else [first, *more]
     yield f"{indent}{head.rstrip()}" if not own else f"{indent}{first}"
-    comments = open_comments(first) if own else 0
+    state = after(first.strip(), Open()) if own else Open()
     least = min((len(x) - len(x.lstrip()) for x in lines), default=0)
     if not own:  # the first line stands where its text did, which is not known any more
         least = min((len(x) - len(x.lstrip()) for x in more), default=0)
         lines = [first, *(x[least:] for x in more)]
         least = 0
     for line in lines:
-        shown = line[least:] if not comments else line.lstrip()
+        text = line.lstrip()
+        blanks = min(len(line) - len(text) - least, _DEEPEST)
+        shown = text if state.comments else " " * max(0, blanks) + text
         shown = _NOTE.sub("#", shown.lstrip(), count=1) if shown.lstrip().startswith("#") else shown
         yield f"{indent}{_INDENT}{shown}".rstrip()
-        comments = open_comments(line, comments)
+        state = after(line.strip(), state)
 
 
 def colset(item: RawColset) -> str:
     """`colset NAME = DEFINITION`."""
-    texts = [" ".join(t.text.split()) for t in item.texts]
+    texts = [" ".join(x.strip() for x in t.text.split("\n")) for t in item.texts]
     ids = ", ".join(item.ids)
     body: str = item.kind
     match item.kind:

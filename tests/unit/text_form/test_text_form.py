@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -154,6 +155,15 @@ def test_written_and_read_it_is_the_same() -> None:
     assert facts(text(written(document))) == facts(document)
     once = written(document)
     assert written(text(once)) == once, "a text that was written is written in the same way again"
+
+
+def test_the_standard_declarations_are_written_as_one_word() -> None:
+    source = "val a = 1;\nstandard\nblock B\n  standard\n\npage Top\n"
+    assert written(text(source)) == source
+    d = Diagnostics()
+    document = text(source)
+    drawn_one = read_cpn(cpn.emit(document, positions(document)).encode(), "net.cpn", d)
+    assert drawn_one is not None and written(drawn_one) == source
 
 
 def test_as_a_file_of_cpn_tools_it_is_the_same() -> None:
@@ -355,6 +365,63 @@ MISTAKES = {
     ),
     "an option": ("option real true\npage T\n", 1, "no option", "realtimestamp"),
     "a reference": ("globref x;\npage T\n", 1, "a first value", "globref count = 0;"),
+    "declarations below `standard`": (
+        "val n = 3;\nstandard\n  val n = 4;\npage T\n",
+        2,
+        "nothing deeper below it",
+        "as deep as it",
+    ),
+    "a note beside `standard`": ("standard # all\npage T\n", 1, "line of its own", "as deep as it"),
+    "two words of `declare`": (
+        "colset A = int declare ms timed;\npage T\n",
+        1,
+        "a name is expected, not `ms timed`",
+        "colset",
+    ),
+    "bounds twice": ("colset A = int with 1..3 and 5..7;\npage T\n", 1, "more bounds", "1..4"),
+    "three bounds of a string": (
+        'colset A = string with "a".."z" and 1..3 and 5..7;\npage T\n',
+        1,
+        "more bounds",
+        "1..4",
+    ),
+    "a selector that looks like a note": (
+        "standard\ncolset P = record x : INT * y : INT;\nfun sum (p : P) =\n# x p +\n  #y p;\npage T\n",
+        4,
+        "stands inside a text",
+        "a selector without a blank",
+    ),
+    "a note less deep inside a marking": (
+        PAGE + "  place B : INT = 1`1 ++\n  # not 2\n    1`3\n",
+        5,
+        "stands inside a text",
+        "(* ... *)",
+    ),
+    "a selector below a whole text": (
+        PAGE + "  trans T\n    in A : n\n      # x p\n",
+        6,
+        "stands inside a text",
+        "a selector without a blank",
+    ),
+    "a fusion set without a name": ('page T\n  place A fusion "" : INT\n', 2, "`fusion` needs", ""),
+    "two ports of one place": ("page T\n  place A port in port out\n", 2, "`port` twice", "one"),
+    "places that differ in blanks": (
+        'page T\n  place "A  1"\n  place " A 1"\n',
+        3,
+        "place `A 1` is there twice",
+        "another",
+    ),
+    "a character that is not printed": ("page T\n  place A\x01\n", 2, "U+0001", "remove it"),
+    "a comment in the name of a block": (
+        "block A (* b\n  val x = 1;\nblock C *) d\n  val x = 2;\npage T\n",
+        1,
+        "a block has a name",
+        "a note",
+    ),
+    "a semicolon after a transition": ("page T\n  trans T;\n", 2, "nothing more", "below `trans"),
+    "a semicolon after a place": ("page T\n  place A : INT;\n", 2, "does not end with `;`", ""),
+    "a comment of CPN ML on a page": ("page T\n  (* x *)\n", 2, "begins with `(*`", "`# `"),
+    "a note without a blank": ("#x\npage T\n", 1, "begins with `#x`", "a blank after it"),
     "not in UTF-8": (b"page Top\n  place \xff\n", 2, "UTF-8", "UTF-8"),
     "XML": ("<?xml version='1.0'?><workspaceElements/>", 1, "XML", ".cpn"),
 }
@@ -373,6 +440,103 @@ def test_a_note_at_the_end_of_a_line_is_an_error() -> None:
     [(line, message, _)] = errors(ALL)
     assert ALL.split("\n")[line - 1].strip().startswith('place "In Flight"')
     assert "a line of its own" in message
+
+
+READ = {
+    "comments beside colour sets and variables": (
+        "colset A = (* of *) int (* small *);\nvar n : A (* one *);  (* more *)\n",
+        [("colset", "A", "int", (), (), (), False, (), False), ("var", ("n",), "A")],
+    ),
+    "a colour set over lines that are not deeper": (
+        "colset C = with red\n| green;\n",
+        [("colset", "C", "enum", ("red", "green"), (), (), False, (), False)],
+    ),
+    "semicolons inside a declaration": (
+        "var n : A; fun f x = let val y = 1; val z = 2 in y + z end; var m : A;\n",
+        [
+            ("var", ("n",), "A"),
+            ("ml", "fun f x = let val y = 1; val z = 2 in y + z end"),
+            ("var", ("m",), "A"),
+        ],
+    ),
+    "a string over lines": (
+        'val s = "abc \\\n  \\ (* d";\nval t = "*)";\n',
+        [("ml", 'val s = "abc \\\n\\ (* d";'), ("ml", 'val t = "*)";')],
+    ),
+    "words inside strings": (
+        'colset A = string with " and "..";";\ncolset B = subset A with [" by ", " timed"];\n',
+        [
+            ("colset", "A", "string", (), (), ('" and "', '";"'), False, (), False),
+            ("colset", "B", "subset", ("A",), (), ('[" by ", " timed"]',), False, (), False),
+        ],
+    ),
+    "several blanks in a string": (
+        'colset B = subset A with ["x  y"];\n',
+        [("colset", "B", "subset", ("A",), (), ('["x  y"]',), False, (), False)],
+    ),
+    "a semicolon after `use`": ('use "a.sml";\n', [("use", '"a.sml"')]),
+}
+
+
+@pytest.mark.parametrize("name", READ)
+def test_declarations_are_read_and_written_as_they_are(name: str) -> None:
+    source, expected = READ[name]
+    document = text(source + "page Top\n")
+    assert list(facts(document)[0]) == expected
+    assert facts(text(written(document))) == facts(document)
+
+
+def test_a_note_below_what_has_no_text_belongs_to_nothing() -> None:
+    source = "page T\n  place A : INT\n    # of parts\n  trans T\n    in A\n      # any\n"
+    assert facts(text(source)) == facts(text("page T\n  place A : INT\n  trans T\n    in A\n"))
+
+
+def test_an_arrow_needs_no_blanks() -> None:
+    source = 'page T\n  place "a->[b" : INT\n  subst S = Sub (P->"a->[b")\npage Sub\n  place P port in : INT\n'
+    document = text(source)
+    assert facts(document)[1][0][2] == (("S", "Sub", (("P", "a->[b"),)),)
+    assert facts(text(written(document))) == facts(document)
+
+
+def test_a_selector_is_not_written_as_a_note() -> None:
+    document = text(
+        "page T\n  place A : INT\n  trans T\n    in A\n    out A : #\n      x p +\n      #y p\n"
+    )
+    [*_, arc] = text(written(document)).pages[0].arcs
+    assert arc.inscription is not None and arc.inscription.text.text == "#x p +\n#y p"
+
+
+def test_a_string_behind_a_selector_is_written_as_it_is() -> None:
+    document = text(
+        'fun shown p =\n  #name p ^ "# 1"\nfun other p =\n  f\n  #\tname p ^ "# 2";\npage T\n'
+    )
+    once = written(document)
+    assert '#name p ^ "# 1"' in once and '#name p ^ "# 2"' in once
+    assert facts(text(once)) == facts(document)
+
+
+def test_a_backslash_in_a_name_is_one() -> None:
+    document = text('page T\n  place "a\\b \\"c\\" \\\\d" : INT\n')
+    assert document.pages[0].places[0].name == 'a\\b "c" \\d'
+    assert facts(text(written(document))) == facts(document)
+
+
+def test_a_deeply_indented_text_is_read_again() -> None:
+    net = f"net Net\n  standard\n  page Top\n    place A : INT = 1`1 ++{chr(10)}{' ' * 600}1`2"
+    document = read_cpn(drawn(net), "net.cpn", Diagnostics())
+    assert document is not None
+    [place] = document.pages[0].places
+    assert place.initial is not None and " " * 300 in place.initial.text.text
+    assert facts(text(written(document))) == facts(document)
+
+
+def test_fusion_sets_of_one_name_cannot_be_written() -> None:
+    """They would be one in the text."""
+    document = text("page T\n  place A fusion F : INT\n  place B fusion G : INT\n")
+    same_name = tuple(replace(f, name="F") for f in document.fusions)
+    d = Diagnostics()
+    emit(replace(document, fusions=same_name), d)
+    assert [e.message for e in d.errors] == ["2 things have the name of fusion set `F`"]
 
 
 def test_what_cannot_be_written_is_named() -> None:
