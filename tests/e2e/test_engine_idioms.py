@@ -35,6 +35,11 @@ COMPILED = sorted(name for name in NETS if "space" in KEPT[name] and name not in
 ENGINE_FAILS = {"LetInArc", "GuardSquare"}
 """The engine ends with an internal error, of which `check` warns."""
 
+OTHER_ORDER = {
+    f"GuardOrder{name}" for name in ("Third", "Equation", "OtherPlace", "EquationOnArc", "InArc")
+}
+"""The engine computes something that raises an exception before a condition that is false, of which `check` warns."""
+
 
 def test_every_net_has_an_answer() -> None:
     assert len(NETS) >= 295
@@ -64,6 +69,10 @@ def test_what_the_engine_says(name: str, seen: Seen) -> None:
     if "run" in kept:
         assert seen.marking(kept).state in STATES, seen.marking(kept).note
         run = seen.run(kept["run"])
+        if name in OTHER_ORDER:
+            assert "Empty" in kept["run"]["stopped_by_error"]
+            assert (run.state, "guard-order" in seen.codes) == ("engine", True), run.note
+            return
         assert run.state in STATES, run.note
 
 

@@ -35,6 +35,7 @@ from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.trace.followed import Followed
 from pn2code.trace.recording import recording
 from pn2code.trace.replay_recording import follow
 from pn2code.verify.exploring.explore import explore
@@ -89,6 +90,8 @@ RESETS = Verdict(
 UNENTERED = Verdict(
     "engine", "its state space tool cannot be entered with a name or a fusion set of the net"
 )
+ORDER = Verdict("engine", "it asks conditions in another order, which was warned of")
+ORDER_WARNING = "guard-order"
 SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
 ENTERING = "Exception raised entering state space tool"
 SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
@@ -240,7 +243,35 @@ class Seen:
             )
         if not followed.ok:
             return differs(f"step {followed.steps + 1}: {followed.why}")
+        error = answer["stopped_by_error"] or ""
+        if error and not followed.random and not self._raises(followed):
+            return self._unraised(error)
         return Verdict("random") if followed.random else AGREES
+
+    def _raises(self, followed: Followed) -> bool:
+        """Whether after the steps of a run there is an exception here, too: in the search, or when something occurs."""
+        assert self.net is not None
+        try:
+            game = Game(self.net, seed=1)
+            for time, element in followed.occurrences:
+                game.set_time(time)
+                game.fire(element)
+            settled = game.advance_time(game.marking)
+            for element in game.enabled_in(settled):
+                game.occur(settled, element)
+        except GameError:
+            return True
+        return False
+
+    def _unraised(self, error: str) -> Verdict:
+        """What to say of an exception that is only there."""
+        if BROKEN in error:
+            return ENGINE
+        if self._takes_too_many(error):
+            return FUSED
+        if ORDER_WARNING in self.codes:
+            return ORDER
+        return differs(f"the engine ends with {error}")
 
     def space(self, answer: dict[str, Any]) -> Verdict:
         """Sizes, dead and home markings and components by the compiled explorer; small graphs node by node."""
@@ -262,7 +293,7 @@ class Seen:
             if BROKEN in answer["stopped_by_error"]:
                 return ENGINE
             if found.error is None and found.complete:
-                return differs(f"the engine ends with {answer['stopped_by_error']}")
+                return self._unraised(answer["stopped_by_error"])
             return AGREES
         if not answer["entire"] or found.error is not None:
             return NOTHING

@@ -293,3 +293,13 @@ NOT_IN_CPN_ML = register(
     "CPN Tools refuses `open` anywhere in a declaration, `signature`, `datatype a = datatype b`, and an expression "
     "where a declaration is expected.",
 )
+GUARD_ORDER = register(
+    "guard-order",
+    "CPN Tools may ask the conditions of a transition in another order, in which one raises an exception",
+    "Conditions are asked one after the other, and the first that is false ends the question. In which order CPN Tools "
+    "asks cannot be told from the net: with `[length l >= 2, m = hd l]` it computes `hd l` first, and stops with "
+    "`Empty` at an empty list, in the simulator and in the state space; with `[length l > 0, hd l > 0]` it does not, "
+    "and with `[n > 1, length l > 0, hd l > n]` it does. pn2code asks as soon as the variables have values, in the "
+    "order in which the conditions are written. What it finds, also that no exception is raised, holds for this "
+    "order. Within `andalso` and `if` the order is that of Standard ML in both.",
+)

@@ -8,6 +8,7 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
 from pn2code.ml.core.computing import Compute
+from pn2code.net import guard_order
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
@@ -82,7 +83,10 @@ def _examine(
     if len(d.errors) > before:
         check_hierarchy(typed, d)
         return Examined(document, None)
-    return Examined(document, flatten(typed, d), typed)
+    flat = flatten(typed, d)
+    if flat is not None:
+        guard_order.warn(flat, d)
+    return Examined(document, flat, typed)
 
 
 def load(

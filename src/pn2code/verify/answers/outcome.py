@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from pn2code.base.frozen import frozen
+from pn2code.net import guard_order
 from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raises
@@ -22,6 +23,8 @@ _MORE = {
     "chance": "the net draws random numbers or reads files",
     "steps": "the net asks for the number of steps",
 }
+MOST_NAMED = 5
+"""Transitions that are named in one sentence."""
 _OPEN_YET = "nothing that was asked of this state space was open any more"
 
 
@@ -99,16 +102,30 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
         are = "are" if counts.open != 1 else "is"
         return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
     if counts.all and _is_enough(found, counts):
-        return f"Verdict: YES. {_all_good(counts.all)}."
+        return f"Verdict: YES. {_all_good(counts.all)}.{_in_order(net)}"
     if found.complete:
         one = nondeterminism.undetermined(net)
         what = (
             f"markings of one of many state spaces ({_MORE[one]})" if one else "reachable markings"
         )
-        return f"Verdict: COMPLETE. All {what} were seen, and there are no properties to check."
+        nothing = "and there are no properties to check"
+        return f"Verdict: COMPLETE. All {what} were seen, {nothing}.{_in_order(net)}"
     why = _why(found, counts)
     known = f"{_all_good(counts.all)}, but " if counts.all else ""
     return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."
+
+
+def _in_order(net: FlatNet) -> str:
+    """That CPN Tools may stop with an exception where the answers say nothing of one, after a blank; or ""."""
+    found = guard_order.unsure(net)
+    if not found:
+        return ""
+    names = ", ".join(f"`{x.transition.name}`" for x in found[:MOST_NAMED])
+    more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+    return (
+        f" This holds for the order in which conditions are asked here; CPN Tools may ask those of {names}{more} in "
+        "another, and stop with an exception (warning `guard-order`)."
+    )
 
 
 def _all_good(number: int) -> str:

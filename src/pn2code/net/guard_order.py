@@ -1,0 +1,188 @@
+"""Conditions that CPN Tools may look at before others that keep them from being looked at here.
+
+With `[length l >= 2, m = hd l]` its engine computes `hd l` first, whatever `length l` is, and stops with the exception
+`Empty` at an empty list. Here the first condition ends the question. In which order the engine asks is decided by a
+search for the cheapest order, in which equal ones are taken as its queue happens to hold them (found by experiment):
+
+    [length l > 0, hd l > 0]         asked as written; the other way round if written so
+    [n > 1, length l > 0, hd l > n]  `hd l > n` first
+    [length l > 0, m = hd l]         the equation first
+    [length l > 0, m = hd l, m > 1]  the equation second
+
+so that nothing can be built on it. What is found here raises no exception in the order of the plan, and might in
+another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pn2code.base.frozen import frozen
+from pn2code.diagnostics import Diagnostics, Note
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Con, Exp, Lit, PVar, Symbol
+from pn2code.net.codes import GUARD_ORDER
+from pn2code.net.flat import (
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    BindTerm,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
+from pn2code.net.raising import Raising
+from pn2code.net.total import is_total
+from pn2code.net.uses import NetVariables, pattern_variables
+
+_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+_WHOLE = frozenset(
+    {Kind.UNIT, Kind.BOOL, Kind.ENUM, Kind.INT, Kind.INTINF, Kind.REAL, Kind.STRING, Kind.TIME}
+)
+MOST_NAMED = 5
+"""Transitions that get a warning of their own."""
+_Place = tuple[int, int, int]
+"""In the order: after how many steps of the plan, whether it is a step, a guard or an arc, which."""
+_STEP, _GUARD, _ARC = range(3)
+
+
+@frozen
+class Unsure:
+    """A transition, what may raise an exception in it, and the first condition that may keep it from being computed."""
+
+    transition: FlatTransition
+    raises: Exp
+    first: Exp
+
+
+@frozen
+class _Condition:
+    at: _Place
+    text: Exp
+    may_raise: bool
+    may_fail: bool
+    binds: frozenset[Symbol]
+    needs: frozenset[Symbol]
+
+
+def unsure(net: FlatNet) -> tuple[Unsure, ...]:
+    """One of each transition at most, in the order of the net; none in PNML nets, which CPN Tools does not read."""
+    if net.file.lower().endswith(".pnml") or not any(t.guards for t in net.transitions):
+        return ()
+    raising, uses = Raising(net.program), NetVariables(net.program.variables)
+    found = (_unsure(t, raising, uses) for t in net.transitions if t.guards)
+    return tuple(x for x in found if x is not None)
+
+
+def warn(net: FlatNet, d: Diagnostics) -> None:
+    """Warn of the first such transitions, of those on a page that is used more than once only once."""
+    found = unsure(net)
+    first = {x.transition.id: x for x in reversed(found)}
+    named = [x for x in found if first[x.transition.id] is x]
+    for i, x in enumerate(named[:MOST_NAMED], 1):
+        t = x.transition
+        more = len(named) - i if i == MOST_NAMED else 0
+        d.warning(
+            GUARD_ORDER,
+            f"CPN Tools may compute `{_line(x.raises)}` of transition `{t.short}` before it looks at "
+            f"`{_line(x.first)}`, and stops if it raises an exception then; here the latter is asked first"
+            + (f"; and so in {more} more transitions" if more else ""),
+            x.raises.span,
+            notes=[Note("the transition is here", t.origin)]
+            if x.raises.span.origin != t.origin
+            else [],
+            hint="put both into one condition: `a andalso b`, or `m = (if a then b else c)`",
+        )
+
+
+def _line(e: Exp) -> str:
+    return " ".join(e.span.text.split())
+
+
+def _unsure(t: FlatTransition, raising: Raising, uses: NetVariables) -> Unsure | None:
+    found = sorted(_conditions(t, raising, uses), key=lambda x: x.at)
+    for i, condition in enumerate(found):
+        if not condition.may_raise:
+            continue
+        needs = condition.needs
+        hiding: _Condition | None = None
+        for other in reversed(found[:i]):
+            if needs & other.binds:
+                needs |= other.needs
+            elif other.may_fail:
+                hiding = other
+        if hiding is not None:
+            return Unsure(t, condition.text, hiding.text)
+    return None
+
+
+def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iterator[_Condition]:
+    own = frozenset(t.variables)
+    bound: list[frozenset[Symbol]] = [frozenset()]
+    steps: set[tuple[int, int]] = set()
+    equations: set[int] = set()
+
+    def needed(*texts: Exp | None) -> frozenset[Symbol]:
+        return frozenset(uses.of(*texts)) & own
+
+    for i, step in enumerate(t.plan, 1):
+        before = bound[-1]
+        new: frozenset[Symbol] = frozenset()
+        match step:
+            case BindTerm(arc, index):
+                term = _term(t, arc, index)
+                names = frozenset(pattern_variables(term.pattern))
+                new, needs = names - before, needed(*_texts(term)) - (names - before)
+                steps.add((arc, index))
+                may = any(map(raising.raise_in, _texts(term)))
+                fails = not isinstance(term.pattern, PVar) or not new or term.delay is not None
+                yield _Condition((i, _STEP, 0), term.value, may, fails, new, needs)
+            case BindEquation(guard, pattern, value):
+                equations.add(guard)
+                names = frozenset(pattern_variables(pattern))
+                new, needs = names - before, needed(value)
+                fails = (
+                    not isinstance(pattern, PVar) or not new or not _is_whole(pattern.symbol.colset)
+                )
+                may = raising.raise_in(value)
+                yield _Condition((i, _STEP, 0), t.guards[guard], may, fails, new, needs)
+            case BindAll(symbol) | BindRandom(symbol):
+                new = frozenset({symbol})
+        bound.append(before | new)
+
+    def at(needs: frozenset[Symbol]) -> int:
+        return next((i for i, known in enumerate(bound) if needs <= known), len(bound) - 1)
+
+    nothing: frozenset[Symbol] = frozenset()
+    for i, text in enumerate(t.guards):
+        if i not in equations and not isinstance(text, Con | Lit):
+            needs = needed(text)
+            place = (at(needs), _GUARD, i)
+            yield _Condition(place, text, raising.raise_in(text), True, nothing, needs)
+    for i, taken in enumerate(t.arcs):
+        if taken.kind not in _TAKING or taken.inscription is None:
+            continue
+        for j, term in enumerate(taken.inscription.terms):
+            if (i, j) in steps:
+                continue
+            needs, texts = needed(*_texts(term)), _texts(term)
+            when = at(needs) if all(map(is_total, texts)) else len(bound) - 1
+            may = any(map(raising.raise_in, texts))
+            yield _Condition((when, _ARC, i), term.value, may, bool(needs), nothing, needs)
+
+
+def _term(t: FlatTransition, arc: int, index: int) -> Term:
+    inscription = t.arcs[arc].inscription
+    assert inscription is not None
+    return inscription.terms[index]
+
+
+def _texts(term: Term) -> list[Exp]:
+    return [term.coefficient, term.value, *([] if term.delay is None else [term.delay])]
+
+
+def _is_whole(colset: Colset | None) -> bool:
+    """Whether a variable of a colour set takes every value of its type."""
+    c = None if colset is None else colset.resolved
+    return c is None or (c.kind in _WHOLE and c.low is None and c.high is None and c.length is None)
