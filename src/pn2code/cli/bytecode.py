@@ -3,7 +3,9 @@
 Python keeps compiled modules beside their sources. Where it must not (`PYTHONDONTWRITEBYTECODE`) or cannot (sources
 of somebody else), each start of a command would compile a hundred modules again, which is half of the time of
 checking a typical net. Then they are kept in the user's own cache folder instead, by Python's own rules: those of a
-source that has changed are compiled anew.
+source that has changed are compiled anew. Python knows a source by its size and its time; whoever replaces it removes
+what was compiled, but nobody does so in this folder. Images give all their files the same time, so here it counts, too,
+when a file was put where it is.
 
 This concerns pn2code's modules, and those of its libraries that were installed without compiled ones beside them
 (`pip install --no-compile`); installed ones are used where they are.
@@ -18,6 +20,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import cache_from_source
 from pathlib import Path
 from types import CodeType, ModuleType
+from zlib import crc32
 
 from pn2code.base.private_folder import private_folder
 
@@ -63,6 +66,12 @@ class _Loader(SourceFileLoader):
     def __init__(self, name: str, path: str, folder: str) -> None:
         super().__init__(name, path)
         self._folder = folder
+
+    def path_stats(self, path: str) -> dict[str, int]:
+        """What is kept with the compiled module, to know its source by."""
+        status = os.stat(path)  # noqa: PTH116 - for each module
+        known = f"{status.st_mtime_ns} {status.st_ctime_ns}".encode()
+        return {"mtime": crc32(known), "size": status.st_size}
 
     def get_code(self, fullname: str) -> CodeType | None:
         set_before = sys.pycache_prefix, sys.dont_write_bytecode

@@ -13,6 +13,8 @@ import pytest
 import pn2code
 
 SOURCES = Path(pn2code.__file__).parents[1]
+EVERY_FILE = 1_577_836_800
+"""The time of all files."""
 
 
 def version(cache: Path, **environment: str) -> str:
@@ -56,20 +58,23 @@ def test_python_keeps_them_itself_where_it_may(tmp_path: Path, root: Path) -> No
     assert not modules(tmp_path)
 
 
-def import_library(cache: Path, **environment: str) -> None:
-    """Imports a library of one module, beside the cache, as a verb does."""
+def import_library(cache: Path, answer: int = 42, **environment: str) -> int:
+    """Imports a library of one module, beside the cache, as a verb does; gives its answer."""
     library = cache / "library.py"
-    library.write_text("answer = 42\n")
-    subprocess.run(
-        [sys.executable, "-c", "import pn2code.cli, library"],
+    library.write_text(f"answer = {answer}\n")
+    os.utime(library, (EVERY_FILE, EVERY_FILE))
+    done = subprocess.run(
+        [sys.executable, "-c", "import pn2code.cli, library; print(library.answer)"],
         env={
             **os.environ,
             "XDG_CACHE_HOME": str(cache),
             "PYTHONPATH": f"{cache}{os.pathsep}{SOURCES}",
             **environment,
         },
+        stdout=subprocess.PIPE,
         check=True,
     )
+    return int(done.stdout)
 
 
 def test_libraries_that_nobody_has_compiled(tmp_path: Path) -> None:
@@ -77,6 +82,12 @@ def test_libraries_that_nobody_has_compiled(tmp_path: Path) -> None:
     import_library(tmp_path, PYTHONDONTWRITEBYTECODE="1")
     assert list((tmp_path / "pn2code" / "modules").rglob("library*.pyc"))
     assert not (tmp_path / "__pycache__").exists()
+
+
+def test_another_version_whose_file_is_as_long_and_has_the_same_time(tmp_path: Path) -> None:
+    """Images (OSTree, `SOURCE_DATE_EPOCH`) give all their files one time, and versions differ in a digit."""
+    assert import_library(tmp_path, 42, PYTHONDONTWRITEBYTECODE="1") == 42
+    assert import_library(tmp_path, 43, PYTHONDONTWRITEBYTECODE="1") == 43
 
 
 def test_compiled_libraries_are_taken_where_they_are(tmp_path: Path) -> None:
