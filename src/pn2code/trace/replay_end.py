@@ -41,6 +41,7 @@ _LIMITS = (
     "a function is not available here",
 )
 """Errors that a program can come to where the net has none."""
+_DEADLOCK = "deadlock: "
 _NOT_OF_THE_NET = ("interrupted by ", "no end ", "monitor: ", "place `", "cannot write the trace")
 """How other reasons of a supervisor to stop begin: they claim nothing about what the net can do."""
 
@@ -107,7 +108,7 @@ def _simulated(game: Game, why: str, ending: Ending) -> str | None:
 def _run(game: Game, why: str, ending: Ending) -> str | None:
     if why in (*GOES_ON, ERROR):
         return f'it says "{why}", which only simulators say'
-    if ending.by == RUN and why not in RUN_ENDS:
+    if why not in RUN_ENDS and (ending.by == RUN or not _may_be_told(why)):
         return _alone(game, why, ending)
     if why != FINISHED or not ending.parties.is_known:
         return None
@@ -119,9 +120,17 @@ def _run(game: Game, why: str, ending: Ending) -> str | None:
     return f"it says that the cell has finished, but there is no token in {names}"
 
 
+def _may_be_told(why: str) -> bool:
+    """Whether a program of a cell may give this reason: a sentence, often about others, of which the net knows nothing.
+
+    A deadlock is found only by who plays the whole net.
+    """
+    return " " in why.strip() and not why.startswith(_DEADLOCK)
+
+
 def _alone(game: Game, why: str, ending: Ending) -> str | None:
     """A supervisor that plays its net alone (`--dry-run`) ends with a sentence that says what has happened."""
-    if why.startswith("deadlock: "):
+    if why.startswith(_DEADLOCK):
         found = _marked(game, ending)
         if found:
             return f"it says that there was a deadlock, but {found} hold a token"

@@ -244,6 +244,16 @@ def test_the_end_must_be_the_end(net: FlatNet, timed: FlatNet) -> None:
     assert "but Top.Slow (t=1) is" in refused(timed, [later[0], later[-1]]).why
 
 
+@pytest.mark.parametrize("why", ["dead", "limit", "time", "deadlock: nothing is enabled", " "])
+def test_a_program_of_a_cell_ends_for_a_reason(net: FlatNet, why: str) -> None:
+    written = lines(net)
+    by = changed(written[0], by="supervisor")
+    told = changed(written[-1], why="robot1 (pid 7) has died")
+    assert replay_lines([by, *written[1:2], told], net).ok
+    false = refused(net, [by, *written[1:2], changed(written[-1], why=why)]).why
+    assert "no reason for a run" in false or "but Top.Move (n=1, p=" in false
+
+
 def test_steps_come_in_order(net: FlatNet) -> None:
     written = lines(net)
     ahead = [*written[:2], changed(written[2], step=3), *written[3:]]

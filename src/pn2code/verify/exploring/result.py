@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -387,6 +387,23 @@ def _covering_row(net: FlatNet, run: Covering | None) -> dict[str, Any] | None:
         "round": [net.transitions[e.transition].name for e in run.round],
         "trace": str(run.file) if run.file is not None else None,
     }
+
+
+def shortened(found: Exploration, most: int) -> Exploration:
+    """With at most so many colours of each multi-set bound; how many there are is still said."""
+    if found.bounds is None:
+        return found
+    cut_bounds = tuple(
+        replace(
+            own,
+            lower_multiset=own.lower_multiset and own.lower_multiset[:most],
+            upper_multiset=own.upper_multiset and own.upper_multiset[:most],
+            lower_colours=max(own.lower_colours, len(own.lower_multiset or ())),
+            upper_colours=max(own.upper_colours, len(own.upper_multiset or ())),
+        )
+        for own in found.bounds
+    )
+    return replace(found, bounds=cut_bounds)
 
 
 def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
