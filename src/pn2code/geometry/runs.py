@@ -11,7 +11,7 @@ from pn2code.geometry.graph import CLOCK, CellGraph
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
-from pn2code.trace.parties import VERIFY
+from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.trace.writing import TraceFile, TraceUnwritableError
 
 
@@ -60,5 +60,5 @@ def write(
             occurred = game.fire(BindingElement.make(t, graph.binding(e)), checked=False)
             trace.occurrence(game, occurred)
             names.append(t.name)
-        trace.end(game.marking.time, "evidence")
+        trace.end(game.marking.time, EVIDENCE)
     return Run(len(names), len(under_way), tuple(names[-6:]), written)

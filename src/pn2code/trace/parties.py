@@ -16,6 +16,8 @@ SIMULATORS = frozenset({"simulate", "reference"})
 """`by` of traces in which one clock and one scheduler rule the whole net."""
 VERIFY = "verify"
 """`by` of a run of a cell that `verify` has found: like one of all parties, but in units of model time."""
+EVIDENCE = "evidence"
+"""Why such a run ends: it goes as far as what it shows, and claims nothing about what follows."""
 RUN = "run"
 """`by` of a trace in which all parties are merged."""
 SUPERVISOR = "supervisor"

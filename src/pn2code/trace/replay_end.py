@@ -18,7 +18,7 @@ from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.trace.lines import is_number
 from pn2code.trace.markings import Markings
-from pn2code.trace.parties import RUN, Parties
+from pn2code.trace.parties import EVIDENCE, RUN, VERIFY, Parties
 
 FINISHED = "finished"
 ERROR = "error"
@@ -108,6 +108,8 @@ def _simulated(game: Game, why: str, ending: Ending) -> str | None:
 def _run(game: Game, why: str, ending: Ending) -> str | None:
     if why in (*GOES_ON, ERROR):
         return f'it says "{why}", which only simulators say'
+    if (ending.by, why) == (VERIFY, EVIDENCE):
+        return None
     if why not in RUN_ENDS and (ending.by == RUN or not _may_be_told(why)):
         return _alone(game, why, ending)
     if why != FINISHED or not ending.parties.is_known:

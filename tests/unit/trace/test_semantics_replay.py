@@ -244,6 +244,13 @@ def test_the_end_must_be_the_end(net: FlatNet, timed: FlatNet) -> None:
     assert "but Top.Slow (t=1) is" in refused(timed, [later[0], later[-1]]).why
 
 
+@pytest.mark.parametrize("by", ["verify", "supervisor", "run"])
+def test_only_what_verify_has_found_is_evidence(net: FlatNet, by: str) -> None:
+    written = lines(net)
+    told = [changed(written[0], by=by), written[1], changed(written[-1], why="evidence")]
+    assert replay_lines(told, net).ok == (by == "verify")
+
+
 @pytest.mark.parametrize("why", ["dead", "limit", "time", "deadlock: nothing is enabled", " "])
 def test_a_program_of_a_cell_ends_for_a_reason(net: FlatNet, why: str) -> None:
     written = lines(net)

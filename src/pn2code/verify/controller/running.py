@@ -46,7 +46,7 @@ from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
-from pn2code.trace.parties import VERIFY
+from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.poses import Bad
 from pn2code.verify.controller.refusals import refusing
@@ -227,7 +227,7 @@ class Running:
             elif not kept:
                 row["by"] = VERIFY
             elif row.get("event") == "end":
-                row["why"] = "evidence"
+                row["why"] = EVIDENCE
             kept.append(json.dumps(row, ensure_ascii=False) + "\n")
         if loop is not None and begins is None:
             begins = steps
