@@ -148,6 +148,8 @@ class _Steps:
 
     def text(self, step: int) -> str:
         """What occurred in a step (from 0); what is said where the run has ended."""
+        if step >= self.count and self.refused and not self.refused["transition"]:
+            return f"the run ends with what is not so: {self.refused['why']}"
         if step >= self.count and self.refused:
             return f"the next step is not possible: {self.refused['transition']}: {self.refused['why']}"
         if step >= self.count:
