@@ -72,7 +72,9 @@ bool ex_batch_begin(ex_worker_t *worker)
 bool ex_is_near_limit(const ex_run_t *run)
 {
     const uint64_t used = atomic_load_explicit(&run->store.used, memory_order_relaxed);
-    return (run->options.max_states - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads);
+    const uint64_t most = run->options.max_states;
+    /* Other threads may have gone beyond it. */
+    return (used >= most) || ((most - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads));
 }
 
 static void exchange(ex_search_t *own, uint32_t i, uint32_t k)
