@@ -69,14 +69,6 @@ bool ex_batch_begin(ex_worker_t *worker)
            || ex_pause(worker);
 }
 
-bool ex_is_near_limit(const ex_run_t *run)
-{
-    const uint64_t used = atomic_load_explicit(&run->store.used, memory_order_relaxed);
-    const uint64_t most = run->options.max_states;
-    /* Other threads may have gone beyond it. */
-    return (used >= most) || ((most - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads));
-}
-
 static void exchange(ex_search_t *own, uint32_t i, uint32_t k)
 {
     const ex_pending_t other = own->batch[i];

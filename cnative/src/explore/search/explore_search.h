@@ -84,7 +84,13 @@ bool ex_add_new(ex_search_t *own, const ex_key_t *key);
 /* Before a batch is inserted: lets the store grow if need be. False when the run stops. */
 bool ex_batch_begin(ex_worker_t *worker);
 /* Whether it may be that there are as many states as there may be before the batch is inserted. */
-bool ex_is_near_limit(const ex_run_t *run);
+static inline bool ex_is_near_limit(const ex_run_t *run)
+{
+    const uint64_t used = atomic_load_explicit(&run->store.used, memory_order_relaxed);
+    const uint64_t most = run->options.max_states;
+    /* Threads that insert at the same moment may go beyond it. */
+    return (used >= most) || ((most - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads));
+}
 
 /* A key that has been found, into the batch. False when the run stops. */
 bool ex_take(ex_worker_t *worker, const ex_key_t *key, uint64_t hash);
