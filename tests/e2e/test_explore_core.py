@@ -54,7 +54,7 @@ def test_threads_do_not_race(tmp_path: Path) -> None:
 
 
 def test_the_limit_of_states_is_one_also_beyond_it(tmp_path: Path) -> None:
-    """Two threads that come to it at the same moment may both insert: what is left is not negative then, but nothing."""
+    """Two threads that come to it at the same moment may both insert: nothing is left then."""
     done = subprocess.run(
         [explorer_test(tmp_path, "explore_limit", ())], capture_output=True, text=True, check=False
     )
