@@ -11,6 +11,7 @@ from pn2code.reading.document import RawColset, RawVar
 from pn2code.text_form.scan import first, masked, parts, stripped, uncommented
 
 SIMPLE = ("unit", "bool", "int", "intinf", "time", "real", "string")
+"""Those without parts. `standard` declares one of each, with its kind in capital letters as its name."""
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_']*")
 _WORD = re.compile(r"\s*([A-Za-z]+)\b(?!')")

@@ -42,9 +42,6 @@ from pn2code.text_form.lines import read as lines_of
 from pn2code.text_form.pages import PageReader, fusions_of
 from pn2code.text_form.scan import first, masked, parts, plain
 
-STANDARD = ("unit", "bool", "int", "intinf", "time", "real", "string")
-"""The colour sets of `standard`, whose names are these in capital letters: those of a new net in CPN Tools."""
-
 PRIORITIES = {"P_HIGH": 100, "P_NORMAL": 1000, "P_LOW": 10000}
 _ML = frozenset(
     """val fun exception datatype abstype type eqtype local structure signature functor infix infixr nonfix
@@ -238,7 +235,7 @@ class _Reader:
     def standard(self, line: Line) -> list[RawDeclaration]:
         """What each new net of CPN Tools declares: its colour sets and priorities."""
         found: list[RawDeclaration] = []
-        for kind in STANDARD:
+        for kind in colsets.SIMPLE:
             name = kind.upper()
             origin = Origin(
                 self.file, line.number, line.column, "", f"colour set `{name}`", "", "declaration"

@@ -28,7 +28,7 @@ from pn2code.text_form.codes import UNSUPPORTED_IN_TEXT
 from pn2code.text_form.colsets import SIMPLE
 from pn2code.text_form.names import written
 from pn2code.text_form.pages import ARCS, PORTS
-from pn2code.text_form.read import PRIORITIES, STANDARD
+from pn2code.text_form.read import PRIORITIES
 from pn2code.text_form.scan import Open, after
 
 _INDENT = "  "
@@ -36,7 +36,7 @@ _DEEPEST = 200
 """Columns that a line of a text stands deeper than its first one, at most."""
 
 _STANDARD = [
-    *(f"colset {kind.upper()} = {kind};" for kind in STANDARD),
+    *(f"colset {kind.upper()} = {kind};" for kind in SIMPLE),
     *(f"val {name} = {value};" for name, value in PRIORITIES.items()),
 ]
 _WORDS_OF_ARCS = {orientation: word for word, orientation in ARCS.items()}
