@@ -98,11 +98,12 @@ def measure(folder: Path | None, repeat: int, minutes: int) -> int:
             looks = _memory(browser, page, minutes)
         with launched() as browser:
             whole = [_smooth(browser, page) for _ in range(max(repeat // 3, 1))]
+        size = page.stat().st_size
     firsts, works = [s for s, _ in begun], [w for _, w in begun]
     first, frames = median(firsts), median(rate for rate, _, _ in smooth)
     settled = looks[min(_SETTLED_S // 60, len(looks) - 1)]
     growth = looks[-1]["JSHeapUsedSize"] / settled["JSHeapUsedSize"]
-    print(f"{cores} cores; load at the start {load:.1f}; {page.stat().st_size / 1e6:.2f} MB\n")
+    print(f"{cores} cores; load at the start {load:.1f}; {size / 1e6:.2f} MB\n")
     print("| what | median | spread | aim |\n|---|---|---|---|")
     print(f"| first picture | {first:.2f} s | {_spread(firsts)} | below {FIRST_S:g} s |")
     print(f"| processor time until then | {median(works):.2f} s | {_spread(works)} | |")
