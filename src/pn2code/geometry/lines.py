@@ -104,7 +104,7 @@ class Follower:
         is_fine = there & ((inside > 0.0) & (reach > 0.0) & (y <= far)).all(axis=1)
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
-        rotation = self._k.forward_many(flat, frames)[:, :3, :3]
+        rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
         spin = line.spins(rotation).reshape(*q.shape[:2], 3)
         shift = line.shifts(s.ravel()).reshape(spin.shape)
         twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)

@@ -194,9 +194,9 @@ class Kinematics:
         """`T_base_tcp`."""
         return np.asarray(self.forward_many(np.asarray(q, float)[None])[0])
 
-    def forward_many(self, q: Array, frames: Sequence[Array] | None = None) -> Array:
-        """`T_base_tcp` of n joint positions (n, axes): (n, 4, 4); `frames`: their `link_frames`, if these are known."""
-        return np.asarray((frames or self._chain.frames(q))[-1] @ self.T_flange_tcp)
+    def forward_many(self, q: Array) -> Array:
+        """`T_base_tcp` of n joint positions (n, axes): (n, 4, 4)."""
+        return np.asarray(self._chain.frames(q)[-1] @ self.T_flange_tcp)
 
     def joint_frames(self, q: ArrayLike) -> Array:
         """`T_base_joint` of all axes, after their own motion, and of the flange: (axes + 1, 4, 4)."""
@@ -263,7 +263,7 @@ class Kinematics:
         """Square matrices that take axis speeds to what a line is about, (n, axes, axes): see `led_twist`.
 
         With six axes that is the Jacobian. A seventh row is how the arm angle changes; with four axes there are rows
-        for the place and the turn about the vertical only. `frames`: as of `forward_many`.
+        for the place and the turn about the vertical only. `frames`: `link_frames`, if known.
         """
         frames = frames or self._chain.frames(q)
         return self._form.square(self._jacobian(frames), frames)
