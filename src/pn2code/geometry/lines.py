@@ -90,8 +90,9 @@ class Follower:
         there = ~np.isnan(q).any(axis=(1, 2))
         axes = q.shape[2]
         flat = np.nan_to_num(q).reshape(-1, axes)
-        jacobian = self._k.led_jacobian(flat).reshape(*q.shape[:2], axes, axes)
-        more_steep, far = (x.reshape(q.shape[:2]) for x in self._k.led_steepness(flat))
+        frames = self._k.link_frames(flat)
+        jacobian = self._k.led_jacobian(flat, frames).reshape(*q.shape[:2], axes, axes)
+        more_steep, far = (x.reshape(q.shape[:2]) for x in self._k.led_steepness(flat, frames))
         steep = self._steep + more_steep
         sigma = np.linalg.svd(jacobian, compute_uv=False)[..., -1]
         w = half[:, None]
@@ -103,7 +104,7 @@ class Follower:
         is_fine = there & ((inside > 0.0) & (reach > 0.0) & (y <= far)).all(axis=1)
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
-        rotation = self._k.forward_many(flat)[:, :3, :3]
+        rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
         spin = line.spins(rotation).reshape(*q.shape[:2], 3)
         shift = line.shifts(s.ravel()).reshape(spin.shape)
         twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)

@@ -22,12 +22,17 @@ from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.chain import cross
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array, Flags, Numbers
+
+FEW = 2
+"""So many pieces take about as long as some more of them do, so these are worked out at once: what they are divided
+into ..."""
+AHEAD, AHEAD_ON_LINES = 2, 1
+"""... so many times. On lines a piece takes eight times as long."""
 
 
 @frozen(eq=False)
@@ -110,6 +115,11 @@ class Knots:
     spread: Array
     lost: Flags
 
+    def only(self, row: int) -> Knots:
+        """One of them."""
+        one = slice(row, row + 1)
+        return Knots(self.q[one], self.ends[one], self.spread[one], self.lost[one])
+
     def pick(self, rows: Numbers) -> Knots:
         """Some of them."""
         return Knots(self.q[rows], self.ends[rows], self.spread[rows], self.lost[rows])
@@ -167,15 +177,20 @@ class Track:
     def knots(self, a: Array, b: Array) -> Knots:
         """The pieces from fraction a to b of the way, (n,) each; each is worked out once."""
         keys = list(zip(a.tolist(), b.tolist(), strict=True))
-        new = [i for i, key in enumerate(keys) if key not in self._rows]
+        new = [key for key in dict.fromkeys(keys) if key not in self._rows]
         if new:
-            found = self._worked_out(a[new], b[new])
+            new = self._with_parts(new)
+            ends = np.array(new)
+            found = self._worked_out(ends[:, 0], ends[:, 1])
             first = len(self._kept)
             self._kept.append(found)
-            for row, i in enumerate(new):
-                self._rows[keys[i]] = (first, row)
+            for row, key in enumerate(new):
+                self._rows[key] = (first, row)
         where = [self._rows[key] for key in keys]
-        if len({batch for batch, _ in where}) == 1:
+        if len(where) == 1:
+            batch, row = where[0]
+            found = self._kept[batch].only(row)
+        elif len({batch for batch, _ in where}) == 1:
             found = self._kept[where[0][0]].pick(np.array([row for _, row in where]))
         else:
             found = Knots(
@@ -186,6 +201,17 @@ class Track:
             )
         self._is_lost = self._is_lost or bool(found.lost.any())
         return found
+
+    def _with_parts(self, new: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        """Pieces that are new; if they are few, also what they will be divided into, which is asked for next."""
+        if self.is_still or len(new) > FEW:
+            return new
+        wanted, latest = dict.fromkeys(new), new
+        for _ in range(AHEAD if self._follower is None else AHEAD_ON_LINES):
+            middles = [(a, (a + b) / 2.0, b) for a, b in latest]
+            latest = [half for a, m, b in middles for half in ((a, m), (m, b))]
+            wanted |= dict.fromkeys(key for key in latest if key not in self._rows)
+        return list(wanted)
 
     def _worked_out(self, a: Array, b: Array) -> Knots:
         path = self.leg.path
@@ -274,13 +300,14 @@ class Track:
         back = np.linalg.inv(self.shape.robot.T_world_base)
         corners = self.boxes(q) @ back[:3, :3].T + back[:3, 3]
         spread, fast = np.zeros((2, len(q), len(self.links)))
+        origins = np.stack([f[:, :3, 3] for f in frames[: axes.shape[1]]], axis=1)
+        off = _off_axes(axes, origins, corners)
         for j in reversed(range(rates.shape[1])):
             if self._slides[j]:
                 way, speed = turns[:, j, None], rates[:, j, None] * np.ones_like(spread)
             else:
-                arms = corners - frames[j][:, None, None, :3, 3]
-                off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
-                way, speed = turns[:, j, None] * (off + spread), rates[:, j, None] * (off + spread)
+                arm = off[:, j] + spread
+                way, speed = turns[:, j, None] * arm, rates[:, j, None] * arm
             fast = np.where(self._moved[:, j], fast + speed, fast)
             spread = np.where(self._moved[:, j], spread + way, spread)
         return fast
@@ -290,21 +317,18 @@ class Track:
         frames = kinematics.link_frames(q)
         axes = kinematics.axes_of(frames)
         base = self.shape.robot.T_world_base
-        turn = np.stack(
-            [np.eye(3)[None].repeat(len(q), 0), *(f[:, :3, :3] for f in frames)], axis=1
-        )
-        shift = np.stack([np.zeros((len(q), 3)), *(f[:, :3, 3] for f in frames)], axis=1)
+        whole = np.empty((len(q), len(frames) + 1, 4, 4))
+        whole[:, 0] = np.eye(4)
+        whole[:, 1:] = np.stack(frames, axis=1)
+        turn, shift = whole[:, :, :3, :3], whole[:, :, :3, 3]
         turn, shift = turn[:, self._joints].transpose(0, 1, 3, 2), shift[:, self._joints, None]
         corners = self._corners @ turn + shift
         ends = (self._ends @ turn + shift) @ base[:3, :3].T + base[:3, 3]
         spread = np.zeros((len(q), len(self.links)))
+        off = _off_axes(axes, whole[:, 1 : axes.shape[1] + 1, :3, 3], corners)
         for j in reversed(range(turns.shape[1])):
-            if self._slides[j]:
-                more = spread + turns[:, j, None]
-            else:
-                arms = corners - frames[j][:, None, None, :3, 3]
-                off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
-                more = spread + turns[:, j, None] * (off + spread)
+            arm = 1.0 if self._slides[j] else off[:, j] + spread
+            more = spread + turns[:, j, None] * arm
             spread = np.where(self._moved[:, j], more, spread)
         if rigid is not None:
             last = kinematics.joints.stop
@@ -328,3 +352,11 @@ class Track:
         if isinstance(path, AlongTrajectory):
             carried = float(np.abs(path.delta[: self.shape.robot.arm.tracks]).sum())
         return np.asarray(half * (path.line.length + path.line.angle * arm + carried))
+
+
+def _off_axes(axes: Array, origins: Array, corners: Array) -> Array:
+    """How far the furthest corner of each link (n, links, 8, 3) is from each axis (n, axes, 3): (n, axes, links)."""
+    x, y, z = np.moveaxis(corners[:, None] - origins[:, :, None, None], -1, 0)
+    u, v, w = np.moveaxis(axes, -1, 0)[..., None, None]
+    a, b, c = v * z - w * y, w * x - u * z, u * y - v * x
+    return np.asarray(np.sqrt((a * a + b * b + c * c).max(axis=3)))

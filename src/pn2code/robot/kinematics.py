@@ -259,22 +259,22 @@ class Kinematics:
             out[:, :3, i], out[:, 3:, i] = axes[:, i], 0.0
         return out
 
-    def led_jacobian(self, q: Array) -> Array:
+    def led_jacobian(self, q: Array, frames: Sequence[Array] | None = None) -> Array:
         """Square matrices that take axis speeds to what a line is about, (n, axes, axes): see `led_twist`.
 
         With six axes that is the Jacobian. A seventh row is how the arm angle changes; with four axes there are rows
-        for the place and the turn about the vertical only.
+        for the place and the turn about the vertical only. `frames`: `link_frames`, if known.
         """
-        frames = self._chain.frames(q)
+        frames = frames or self._chain.frames(q)
         return self._form.square(self._jacobian(frames), frames)
 
     def led_twist(self, twist: Array, swivel: float | Array = 0.0) -> Array:
         """Of twists of the TCP (..., 6) what a line is about; `swivel`: how fast the arm angle changes."""
         return self._form.wanted(twist, swivel)
 
-    def led_steepness(self, q: Array) -> tuple[Array, Array]:
+    def led_steepness(self, q: Array, frames: Sequence[Array] | None = None) -> tuple[Array, Array]:
         """How fast `led_jacobian` changes beside the Jacobian, at most, and how far from q (rad) that holds: (n,)."""
-        return self._form.steep(self._chain.frames(q))
+        return self._form.steep(frames or self._chain.frames(q))
 
     def conditioning(self, q: ArrayLike) -> Conditioning:
         """Condition number, smallest singular value, elbow and wrist angle at a joint position."""

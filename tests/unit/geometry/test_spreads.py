@@ -11,7 +11,7 @@ import pytest
 from helpers.robot_cells import arm_kinematics, pose_mm, riveting_cell
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.pieces import between, gaps
-from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.geometry.tracks import ArmShape, Knots, Track
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveCircular, MoveHome, MoveJoint, MoveLinear
 from pn2code.robot.robot_cell import RobotCell
@@ -149,3 +149,29 @@ def test_the_bound_on_the_steepness_of_a_jacobian_holds() -> None:
         change = kinematics.jacobian(q + step) - kinematics.jacobian(q)
         assert np.linalg.norm(change, 2) / 1e-5 <= limit
     assert limit < 6.0 * math.sqrt(1.0 + 4.5**2)
+
+
+def test_what_pieces_are_divided_into_is_worked_out_with_them(
+    cell: RobotCell, shapes: dict[str, ArmShape], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+    work_out = Track._worked_out
+
+    def counted(track: Track, a: np.ndarray, b: np.ndarray) -> Knots:
+        asked.append(len(a))
+        return work_out(track, a, b)
+
+    for leg in legs(cell):
+        ahead, alone = (Track(shapes[leg.robot], leg) for _ in range(2))
+        halves = np.array([0.0, 0.5]), np.array([0.5, 1.0])
+        with monkeypatch.context() as patched:
+            patched.setattr(Track, "_worked_out", counted)
+            ahead.knots(np.array([0.0]), np.array([1.0]))
+            before = len(asked)
+            found = ahead.knots(*halves)
+            assert len(asked) == before
+        # The numbers are those of pieces that are worked out by themselves, to the last bit.
+        for row in range(2):
+            single = work_out(alone, halves[0][[row]], halves[1][[row]])
+            for name in ("q", "ends", "spread", "lost"):
+                assert np.array_equal(getattr(found, name)[[row]], getattr(single, name)), name

@@ -66,3 +66,13 @@ def test_the_effects_of_a_program_are_found_once() -> None:
     first = [effects_of(net.program) for net in nets]
     assert all(effects_of(n.program) is found for n, found in zip(nets, first, strict=True))
     assert [outside(found, net) for found, net in zip(first, nets, strict=True)] == [True, False]
+
+
+def test_a_term_is_looked_through_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    net = flat(NET.format("throw ()"))
+    found, looked = Effects(net.program), []
+    look = Effects._looked_up
+    monkeypatch.setattr(Effects, "_looked_up", lambda e, x: looked.append(x) or look(e, x))
+    arcs = [a.inscription.value for a in net.transitions[0].arcs if a.inscription]
+    assert [found.of(*arcs), found.of(None, *arcs), found.of(*arcs)] == [{Effect.DRAW}] * 3
+    assert len(looked) == len(arcs) == 2

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import Enum
+from functools import cache
 from typing import Any
 
 from pn2code.ml.core import terms as core
@@ -88,13 +89,14 @@ class Effects:
 
     def __init__(self, program: core.Program) -> None:
         self._of_symbol: dict[int, Found] = {}
+        self._of_term: dict[int, tuple[object, Found]] = {}
         for declaration in program.declarations:
             match declaration:
                 case core.ValBind(pattern, value):
                     self._bind(pattern, value)
                 case core.RecBind(bindings):
                     # The functions of a group may call each other: what one does, all may do.
-                    found = self.of(declaration)
+                    found = self._looked_up(declaration)
                     for symbol, _ in bindings:
                         self._of_symbol[symbol.uid] = found
 
@@ -108,20 +110,33 @@ class Effects:
         """
         match pattern, value:
             case _, core.Let(declarations, body):
-                self._bind(pattern, body, around | self.of(declarations))
+                self._bind(pattern, body, around | self._looked_up(declarations))
             case core.PRecord(parts), core.RecordExp(fields):
                 values = dict(fields)
                 for label, part in parts:
                     self._bind(part, values[label], around)
             case _:
-                found = around | self.of(value)
+                found = around | self._looked_up(value)
                 for symbol in _symbols(pattern):
                     self._of_symbol[symbol.uid] = found
 
     def of(self, *nodes: Any) -> Found:
         """The effects of pieces of the core language; None counts as nothing."""
+        if len(nodes) != 1:
+            return NONE.union(*(self.of(node) for node in nodes))
+        (node,) = nodes
+        if node is None:
+            return NONE
+        # Many ask for those of the same term; as long as it is kept here no other one has its number.
+        known = self._of_term.get(id(node))
+        if known is None:
+            known = self._of_term[id(node)] = node, self._looked_up(node)
+        return known[1]
+
+    def _looked_up(self, node: Any) -> Found:
+        """Those of a piece, by what is known of symbols now."""
         found: set[Effect] = set()
-        todo: list[Any] = [node for node in nodes if node is not None]
+        todo: list[Any] = [node]
         while todo:
             item = todo.pop()
             if isinstance(item, core.Builtin):
@@ -130,8 +145,8 @@ class Effects:
                 found |= self._of_symbol.get(item.uid, NONE)
             elif isinstance(item, tuple):
                 todo.extend(item)
-            elif type(item).__module__ == core.__name__:
-                todo.extend(getattr(item, name) for name in item.__slots__ if name not in _LEAVES)
+            else:
+                todo.extend(getattr(item, name) for name in _parts(item.__class__))
         return frozenset(found)
 
 
@@ -149,6 +164,14 @@ def texts(net: FlatNet) -> Iterator[Any]:
     for t in net.transitions:
         yield from (t.guards, t.delay, t.code.action if t.code else None)
         yield from (a.inscription.value for a in t.arcs if a.inscription)
+
+
+@cache
+def _parts(kind: type) -> tuple[str, ...]:
+    """The fields in which a term has others; none of what is no term."""
+    if kind.__module__ != core.__name__:
+        return ()
+    return tuple(name for name in kind.__slots__ if name not in _LEAVES)  # type: ignore[attr-defined]
 
 
 def _symbols(pattern: core.Pat) -> list[core.Symbol]:
