@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.generated import is_checked
 from helpers.traced_runs import make, traces
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
@@ -35,12 +36,12 @@ def _compiler() -> tuple[str, ...]:
 
 @pytest.mark.parametrize("name", ["riveting", "sorting", "timed"])
 def test_traces_are_the_same(
-    name: str, of_example: Callable[[str], Generated], tmp_path: Path
+    name: str, of_example: Callable[..., Generated], tmp_path: Path
 ) -> None:
     if shutil.which(QEMU) is None:
         pytest.skip(f"there is no `{QEMU}` (Debian: qemu-user)")
     compiler = _compiler()
-    made = of_example(name)
+    made = of_example(name, checked=is_checked(name))
     here, there = tmp_path / "here", tmp_path / "aarch64"
     for folder, options in ((here, ()), (there, compiler)):
         write(folder, made.files)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -22,7 +22,7 @@ from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry import report
 from pn2code.geometry.answers import Layout
-from pn2code.geometry.check import examine
+from pn2code.geometry.check import Geometry, examine
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import explore_cell
 from pn2code.geometry.legs import Planner
@@ -79,9 +79,45 @@ def test_arms_that_take_turns_keep_apart(tmp_path: Path) -> None:
     assert not list((tmp_path / "runs").iterdir())
 
 
-def test_arms_that_do_not_are_found_with_a_run_and_what_would_help(tmp_path: Path) -> None:
-    cell = meeting_cell(tmp_path / "cell", guarded=False)
-    found = looked(cell, tmp_path / "runs")
+@dataclass(frozen=True)
+class Told:
+    """A cell whose arms may meet, what the command has found of it, and what it has printed as JSON."""
+
+    cell: Path
+    found: Geometry
+    result: Any
+
+    def command(self, *options: str) -> Any:
+        """The command once more: what is found is looked for once, and told several times."""
+        runs = str(self.cell.parent / "runs")
+        with pytest.MonkeyPatch.context() as changed:
+            changed.setattr("pn2code.geometry.check.examine", lambda *_: self.found)
+            return CliRunner().invoke(
+                app, ["check", "--geometry", str(self.cell), "-o", runs, *options]
+            )
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> Told:
+    folder = tmp_path_factory.mktemp("told")
+    cell = meeting_cell(folder / "cell", guarded=False)
+    seen: list[Any] = []
+
+    def noted(*asked: Any) -> Any:
+        seen.append(examine(*asked))
+        return seen[-1]
+
+    arguments = ["check", "--geometry", str(cell), "-o", str(folder / "runs")]
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr("pn2code.geometry.check.examine", noted)
+        result = CliRunner().invoke(app, [*arguments, "--json", "--pictures"])
+    (found,) = seen
+    assert found is not None and not found.why, result.output
+    return Told(cell, found, result)
+
+
+def test_arms_that_do_not_are_found_with_a_run_and_what_would_help(told: Told) -> None:
+    cell, found = told.cell, told.found.layouts[0][0]
     assert (found.of_moves, found.of_pairs) == ("yes", "no")
     (pair,) = found.pairs
     assert pair.transitions == ("Top.Robot1.Visit1", "Top.Robot2.Visit2")
@@ -136,9 +172,11 @@ def test_a_line_through_something_that_stands(tmp_path: Path) -> None:
 
 
 def test_parts_that_are_carried(tmp_path: Path) -> None:
-    found = looked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
-    assert (found.of_moves, found.of_pairs, found.open) == ("yes", "yes", "")
+    """It is so, and on random walks nothing else happens."""
+    found, met = walked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
+    assert (found.answer, found.of_moves, found.of_pairs, found.open) == ("yes", "yes", "yes", "")
     assert any(m.command.endswith("with box") for m in found.moves)
+    assert met == [None] * WALKS
 
 
 def test_a_part_in_the_way(tmp_path: Path) -> None:
@@ -204,26 +242,15 @@ def test_a_part_that_is_in_something_at_the_start(tmp_path: Path) -> None:
     assert "`[parts.box]` places it, is 15.0 mm deep in `floor`" in bad.problem
 
 
-def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is found is looked for once, and told twice."""
-    seen: list[Any] = []
-
-    def once(*asked: Any) -> Any:
-        seen.extend([examine(*asked)] if not seen else [])
-        return seen[0]
-
-    monkeypatch.setattr("pn2code.geometry.check.examine", once)
-    cell = meeting_cell(tmp_path / "cell", guarded=False)
-    arguments = ["check", "--geometry", str(cell), "-o", str(tmp_path / "runs")]
-    result = CliRunner().invoke(app, [*arguments, "--json", "--pictures"])
-    assert result.exit_code == 1
-    found = json.loads(result.stdout)
+def test_the_command(told: Told) -> None:
+    assert told.result.exit_code == 1
+    found = json.loads(told.result.stdout)
     layout = found["layouts"][0]
     assert (found["answer"], layout["moves_answer"], layout["pairs_answer"]) == ("no", "yes", "no")
     (pair,) = layout["pairs"]
     assert Path(pair["picture"]).is_file() and Path(pair["run"]["trace"]).is_file()
     assert layout["proposals"][0]["works"]
-    result = CliRunner().invoke(app, arguments)
+    result = told.command()
     assert result.exit_code == 1
     assert "may be under way at once" in result.stdout
     assert "proposal: a place `Top.Zone` of the supervisor" in result.stdout
@@ -269,11 +296,6 @@ def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     layout, met = walked(cell, tmp_path / "runs")
     assert seed != FINE or layout.answer == "yes"
     assert layout.answer == "no" or met == [None] * WALKS
-
-
-def test_walks_with_parts(tmp_path: Path) -> None:
-    layout, met = walked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
-    assert layout.answer == "yes" and met == [None] * WALKS
 
 
 def walked(cell: Path, runs: Path) -> tuple[Layout, list[str | None]]:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.generated import is_checked
 from helpers.traced_runs import make, traces
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
@@ -30,12 +31,12 @@ def _there() -> list[str]:
 
 @pytest.mark.parametrize("name", ["sorting", "timed"])
 def test_traces_are_the_same(
-    name: str, of_example: Callable[[str], Generated], tmp_path: Path
+    name: str, of_example: Callable[..., Generated], tmp_path: Path
 ) -> None:
     compilers = _there()
     if len(compilers) < 2:
         pytest.skip(f"nothing to compare with: of gcc, clang and ziglang there is {compilers}")
-    made = of_example(name)
+    made = of_example(name, checked=is_checked(name))
     found = {}
     for number, compiler in enumerate(compilers):
         folder = tmp_path / str(number)

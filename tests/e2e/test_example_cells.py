@@ -20,10 +20,11 @@ from tools.forgery.forgeries import forgeries
 from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
+from helpers.generated import LARGE, is_checked
 from helpers.solvers import solver_for
-from helpers.thorough import THOROUGH, amount
+from helpers.thorough import amount
 from pn2code.cli.main import app
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, render
 from pn2code.net.front import load
 from pn2code.pipeline import Generated, generate
 from pn2code.report.summary import page
@@ -44,7 +45,6 @@ class Expected:
         counts: part of the summary of a run.
         final: the binding of the last occurrence of the supervisor, `Finish`.
         owners: who runs a program, in order.
-        is_large: the cell as it runs has a million states, so its programs are checked once, by `verify`.
     """
 
     net: str
@@ -55,7 +55,6 @@ class Expected:
     final: dict[str, Any]
     owners: tuple[str, ...]
     properties: int = 5
-    is_large: bool = False
 
 
 EXAMPLES = {
@@ -102,11 +101,11 @@ EXAMPLES = {
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
         {"t": {"good": 1, "bad": 1, "unknown": 1}},
-        ("supervisor", "robot", "gauge", "desk"), is_large=True,
+        ("supervisor", "robot", "gauge", "desk"),
     ),
 }  # fmt: skip
 
-FEWER = ("--set", "parts=1", "--set", "orders=1")
+FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
 
 
@@ -127,23 +126,27 @@ def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]
 
 @pytest.fixture(scope="module")
 def generated(example: tuple[Path, Expected], of_example: Callable[..., Generated]) -> Generated:
-    return of_example(example[0].name, checked=is_checked(example[1]))
-
-
-def is_checked(expected: Expected) -> bool:
-    """Whether the programs are proved when they are generated; the large cell's are where there is time."""
-    return THOROUGH or not expected.is_large
+    return of_example(example[0].name, checked=is_checked(example[0].name))
 
 
 def test_generation_has_nothing_to_say_and_is_deterministic(
     example: tuple[Path, Expected], generated: Generated
 ) -> None:
-    again = generate(example[0], Diagnostics(), checked=is_checked(example[1]))
+    again = generate(example[0], Diagnostics(), checked=is_checked(example[0].name))
     assert again is not None
     assert again.files == generated.files
     assert tuple(o.name for o in generated.partition.owners) == example[1].owners
     paths = {f.path for f in generated.files}
     assert {f"{name}.tdl" for name in example[1].owners[1:]} < paths
+
+
+@pytest.mark.parametrize("name", sorted(LARGE))
+def test_a_large_cell_with_fewer_parts_is_proved_when_it_is_generated(
+    name: str, root: Path
+) -> None:
+    d = Diagnostics()
+    assert generate(root / "examples" / name, d, values=FEWER) is not None
+    assert not list(d), render.report(d)
 
 
 def test_the_picture_is_that_of_the_net(example: tuple[Path, Expected], tmp_path: Path) -> None:
@@ -161,12 +164,13 @@ def test_verify(example: tuple[Path, Expected], tmp_path: Path) -> None:
     """The net as it is, with the cell as it runs; a large one runs with fewer parts, but in `make thorough`."""
     folder, expected = example
     options = [folder, "--no-medium", "--threads", "1", "--traces", tmp_path]
-    is_small = THOROUGH or not expected.is_large
-    said = _verified(*options, *(() if is_small else ("--no-found", "--no-controller")))
+    is_proved = is_checked(folder.name)
+    said = _verified(*options, *(() if is_proved else ("--no-found", "--no-controller")))
     assert said["complete"] and not said["dead_transitions"]
     assert (said["nodes"], said["dead_markings"]) == (expected.nodes, expected.dead)
-    if not is_small:
-        said = _verified(*options, *FEWER)
+    if not is_proved:
+        fewer = [word for name, value in FEWER.items() for word in ("--set", f"{name}={value}")]
+        said = _verified(*options, *fewer)
     assert said["complete"] and said["status"] == 0
     assert len(said["properties"]) >= expected.properties
     assert {p["name"]: p["answer"] for p in said["properties"] if p["answer"] != "yes"} == {}
@@ -207,7 +211,7 @@ def test_run(
     folder, expected = example
     monkeypatch.setenv("CFLAGS", "-O0")
     d = Diagnostics()
-    options = RunOptions(out=tmp_path, backend="fake", looks=False, checked=is_checked(expected))
+    options = RunOptions(out=tmp_path, backend="fake", looks=False, checked=is_checked(folder.name))
     result = run_cell(folder, options, d)
     assert result is not None and not list(d), [x.message for x in d]
     assert (result.record.verdict, result.record.reason) == ("finished", "")

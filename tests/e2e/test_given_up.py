@@ -70,7 +70,7 @@ def test_a_net_that_takes_too_long_is_compared_in_part(tmp_path: Path) -> None:
 
 def test_a_cell_that_takes_too_long_is_compared_in_part(tmp_path: Path) -> None:
     net = STOCK.replace("  page Top\n", LOOP + "  page Top\n", 1)
-    net = net.replace("guard [n > 0]", "guard [n > 0 andalso loop (100000, 0) > 1]", 1)
+    net = net.replace("guard [n > 0]", "guard [n > 0 andalso loop (30000, 0) > 1]", 1)
     done = pn2code("conform", cell(tmp_path / "cell", "1\n", net), "--json")
     assert done.returncode == 3, done.stdout + done.stderr
     found = json.loads(done.stdout)

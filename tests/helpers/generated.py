@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from helpers.session import alone
+from helpers.thorough import THOROUGH
 from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.diagnostic import Diagnostic
@@ -21,6 +22,16 @@ from pn2code.pipeline import Examine, Generated, generate
 
 Generate = Callable[..., Generated | None]
 Said = tuple[Generated, list[Diagnostic]]
+LARGE = frozenset({"timed"})
+"""Examples that have a million states as they run, for each of their inputs."""
+
+
+def is_checked(example: str) -> bool:
+    """Whether an example's programs are proved when they are generated; a large one's are with fewer parts only.
+
+    `make thorough` proves all of them (`e2e/test_example_cells.py`).
+    """
+    return THOROUGH or example not in LARGE
 
 
 class Cached:

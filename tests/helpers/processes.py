@@ -12,11 +12,11 @@ import atexit
 import ctypes
 import importlib
 import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -80,12 +80,20 @@ class Child:
 
     def wait(self, timeout: float = DEADLINE_S) -> int:
         """The exit code; kills the process when it runs for too long."""
-        end = time.monotonic() + timeout
-        while (code := self.poll()) is None:
-            if time.monotonic() > end:
-                self.kill()
-                raise TimeoutError(f"process {self.pid} runs on")
-            time.sleep(0.002)
+        if (code := self.poll()) is not None:
+            return code
+        descriptor = os.pidfd_open(
+            self.pid
+        )  # the kernel says when: looking now and then costs as much as a test
+        try:
+            end = select.poll()
+            end.register(descriptor, select.POLLIN)
+            end.poll(timeout * 1000)
+        finally:
+            os.close(descriptor)
+        if (code := self.poll()) is None:
+            self.kill()
+            raise TimeoutError(f"process {self.pid} runs on")
         return code
 
     def signal(self, number: int) -> None:
