@@ -27,6 +27,7 @@ from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind
+from pn2code.verify.controller.running import meek
 
 
 def repeated_unseen(partition: Partition) -> frozenset[int]:
@@ -81,6 +82,7 @@ class Composer(LifeCycle):
         super().__init__(partition, rules, crashes)
         self.is_loose = loose
         self._own_places()
+        self.fresh = {} if loose or crashes.life_cycle else self._fresh()
         self._net_transitions()
         for o in range(len(self.sides)):
             self._publishing(o)
@@ -95,6 +97,24 @@ class Composer(LifeCycle):
                 self._crashing(o)  # last: all places of its memory are there now
         if not loose:
             self._rest()
+
+    def _fresh(self) -> dict[int, int]:
+        """Where scripts begin to look that wait for one of several messages: by owner, a place.
+
+        Such a script takes what comes first in its order of what is there. Whatever was there before its last
+        transition it finds, since it looks at all files after it; what has come since it may have missed. Loosely, and
+        with crashes, scripts may miss anything.
+        """
+        owners = {self.partition.transition_owner[t] for t in meek(self.partition)}
+        found = {o: self.memory(o, "looks anew") for o in sorted(owners)}
+        for o, place in found.items():
+            self.b.forget_initial(self.sides[o].calm)
+            self.b.begin(place, self.b.dot)
+        return found
+
+    def _goes_on(self, o: int) -> int:
+        """Where a side is when it has done something."""
+        return self.fresh.get(o, self.sides[o].calm)
 
     # --- the net's own transitions ---------------------------------------------------------------
 
@@ -115,8 +135,12 @@ class Composer(LifeCycle):
                 # What a side repeats for ever in its memory must not keep the others from doing anything.
                 if o not in pauses:
                     pauses[o] = self.memory(o, "pause")
-                    self.step(f"{side.name}.goes on", "", self.off(pauses[o]), self.on(side.calm))
+                    self.step(
+                        f"{side.name}.goes on", "", self.off(pauses[o]), self.on(self._goes_on(o))
+                    )
                 arcs = [self.off(side.calm), self.on(pauses[o])]
+            elif o in self.fresh:
+                arcs = [self.off(side.calm), self.on(self.fresh[o])]
             self.b.add_arcs(t.index, arcs, reads)
         for f in self.files:
             name = self.partition.owners[f.channel.reader].name
@@ -173,7 +197,11 @@ class Composer(LifeCycle):
             make(o, f, here, following)
             here = following
         self.step(
-            f"{side.name}.has published", "", self.off(here), self.on(side.calm), at=self.local
+            f"{side.name}.has published",
+            "",
+            self.off(here),
+            self.on(self._goes_on(o)),
+            at=self.local,
         )
 
     def _next(self, q: Exp) -> Exp:
@@ -325,17 +353,20 @@ class Composer(LifeCycle):
         """Execution scheme, step 1: the files are looked at one after the other (I6).
 
         A look that finds nothing leaves no trace. So a round begins with the first file that holds something; those
-        before it were looked at earlier, and may have been filled since.
+        before it were looked at earlier, and may have been filled since. Where it matters (`_fresh`), a round that
+        begins with the first file, whatever it holds, comes before all others.
         """
         side = self.sides[o]
         own = [f for f in self.files if f.channel.reader == o]
         flags_first = self.rules.reads_flags_first or o != 0
         own.sort(key=lambda f: (f.channel.kind is ChannelKind.FLAG) != flags_first)
         looks = [self.memory(o, f"looks at {f.channel.file}") for f in own]
+        if o in self.fresh:
+            looks[0] = self.fresh[o]
         for i, f in enumerate(own):
             after = looks[i + 1] if i + 1 < len(own) else side.calm
             self._take(o, f, side.calm, after, "")
-            if i:
+            if i or o in self.fresh:
                 self._take(o, f, looks[i], after, " as well")
                 self._nothing(o, f, looks[i], after)
             self._refuse(o, f)
