@@ -82,7 +82,11 @@ class Composer(LifeCycle):
         super().__init__(partition, rules, crashes)
         self.is_loose = loose
         self._own_places()
-        self.fresh = {} if loose or crashes.life_cycle else self._fresh()
+        is_exact = not (loose or crashes.life_cycle)
+        self.meek = frozenset(meek(partition)) if is_exact else frozenset()
+        self.undecided = self._undecided()
+        self.fresh = self._fresh()
+        self.to_decide = {o: self.memory(o, "is to decide") for o in self.fresh}
         self._net_transitions()
         for o in range(len(self.sides)):
             self._publishing(o)
@@ -105,16 +109,25 @@ class Composer(LifeCycle):
         transition it finds, since it looks at all files after it; what has come since it may have missed. Loosely, and
         with crashes, scripts may miss anything.
         """
-        owners = {self.partition.transition_owner[t] for t in meek(self.partition)}
+        owners = {self.partition.transition_owner[t] for t in self.meek}
         found = {o: self.memory(o, "looks anew") for o in sorted(owners)}
         for o, place in found.items():
-            self.b.forget_initial(self.sides[o].calm)
-            self.b.begin(place, self.b.dot)
+            own = (p for p in self.undecided if self.partition.place_owner[p] == o)
+            if any(self.b.places[p].initial is not None for p in own):
+                self.b.forget_initial(self.sides[o].calm)
+                self.b.begin(place, self.b.dot)
         return found
 
-    def _goes_on(self, o: int) -> int:
-        """Where a side is when it has done something."""
-        return self.fresh.get(o, self.sides[o].calm)
+    def _undecided(self) -> frozenset[int]:
+        """The places of scripts, without their messages, where one of several messages may be waited for."""
+        messages = {c.place for c in self.partition.channels}
+        inputs = (ArcKind.INPUT, ArcKind.BOTH)
+        return frozenset(
+            a.place
+            for t in self.meek
+            for a in self.partition.net.transitions[t].arcs
+            if a.kind in inputs and a.place not in messages
+        )
 
     # --- the net's own transitions ---------------------------------------------------------------
 
@@ -128,6 +141,7 @@ class Composer(LifeCycle):
             o = self.partition.transition_owner[t.index]
             side = self.sides[o]
             touches = any(a.place in reads for a in t.arcs)
+            decides = any(a.place in self.undecided and a.kind is not ArcKind.INPUT for a in t.arcs)
             arcs = [self.has(side.calm)]
             if o and touches:  # a script empties and writes after each transition
                 arcs = [self.off(side.calm), self.on(self.says_of[o])]
@@ -135,12 +149,12 @@ class Composer(LifeCycle):
                 # What a side repeats for ever in its memory must not keep the others from doing anything.
                 if o not in pauses:
                     pauses[o] = self.memory(o, "pause")
-                    self.step(
-                        f"{side.name}.goes on", "", self.off(pauses[o]), self.on(self._goes_on(o))
-                    )
+                    self._goes_on(f"{side.name}.goes on", o, pauses[o], self.slow)
                 arcs = [self.off(side.calm), self.on(pauses[o])]
-            elif o in self.fresh:
+            elif o in self.fresh and decides:
                 arcs = [self.off(side.calm), self.on(self.fresh[o])]
+            if o in self.fresh and decides and self.fresh[o] not in {a.place for a in arcs}:
+                arcs.append(self.on(self.to_decide[o]))
             self.b.add_arcs(t.index, arcs, reads)
         for f in self.files:
             name = self.partition.owners[f.channel.reader].name
@@ -196,13 +210,18 @@ class Composer(LifeCycle):
             following = self.memory(o, f"says {i + 1}")
             make(o, f, here, following)
             here = following
-        self.step(
-            f"{side.name}.has published",
-            "",
-            self.off(here),
-            self.on(self._goes_on(o)),
-            at=self.local,
-        )
+        self._goes_on(f"{side.name}.has published", o, here, self.local)
+
+    def _goes_on(self, name: str, o: int, here: int, at: int) -> None:
+        """A side has done something, and is calm, or looks at all files before it decides what comes next."""
+        calm = self.on(self.sides[o].calm)
+        if o not in self.fresh:
+            self.step(name, "", self.off(here), calm, at=at)
+            return
+        decides = self.to_decide[o]
+        self.step(name, "", self.off(here), self.b.absent(decides), calm, at=at)
+        anew = [self.off(decides), self.on(self.fresh[o])]
+        self.step(f"{name} and looks anew", "", self.off(here), *anew, at=at)
 
     def _next(self, q: Exp) -> Exp:
         """The number after a number."""
