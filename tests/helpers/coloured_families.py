@@ -184,9 +184,71 @@ def vending() -> ColouredNet:
     )  # fmt: skip
 
 
+def peterson(n: int = 2) -> ColouredNet:
+    """Each process waits at each level until it is not the last one there, or all others are out (Peterson 1981)."""
+    last, top, zero = ("number", "Pid", n - 1), ("number", "Level", n - 2), ("number", "Pid", 0)
+    at = tup("i", "l")
+    more = [("climb", ("lessthan", "l", top), {"Passed": at}, {"Ask": tup("i", succ("l"))})]
+    return ColouredNet(
+        {
+            "Pid": Range(0, n - 1), "Level": Range(0, n - 2), "Flag": Enum(("out", "in"), cyclic=False),
+            "PF": Product(("Pid", "Flag")), "PL": Product(("Pid", "Level")), "LP": Product(("Level", "Pid")),
+            "PLP": Product(("Pid", "Level", "Pid")),
+        },
+        {"i": "Pid", "k": "Pid", "l": "Level"},
+        {
+            "Idle": ("Pid", all_("Pid")), "Wants": ("PF", tup(all_("Pid"), "out")), "Ask": ("PL", None),
+            "Turn": ("LP", tup(all_("Level"), zero)), "Test": ("PL", None), "Look": ("PLP", None),
+            "Next": ("PLP", None), "Passed": ("PL", None), "Critical": ("Pid", None),
+        },
+        [
+            ("ask", None, {"Idle": "i", "Wants": tup("i", "out")},
+             {"Wants": tup("i", "in"), "Ask": tup("i", ("number", "Level", 0))}),
+            ("turn", None, {"Ask": at, "Turn": tup("l", "k")}, {"Turn": tup("l", "i"), "Test": at}),
+            ("not_last", ne("i", "k"), {"Test": at, "Turn": tup("l", "k")}, {"Turn": tup("l", "k"), "Passed": at}),
+            ("last", None, {"Test": at, "Turn": tup("l", "i")}, {"Turn": tup("l", "i"), "Look": tup("i", "l", zero)}),
+            ("itself", eq("i", "k"), {"Look": tup("i", "l", "k")}, {"Next": tup("i", "l", "k")}),
+            ("is_out", ne("i", "k"), {"Look": tup("i", "l", "k"), "Wants": tup("k", "out")},
+             {"Next": tup("i", "l", "k"), "Wants": tup("k", "out")}),
+            ("is_in", ne("i", "k"), {"Look": tup("i", "l", "k"), "Wants": tup("k", "in")},
+             {"Test": at, "Wants": tup("k", "in")}),
+            ("next", ("lessthan", "k", last), {"Next": tup("i", "l", "k")}, {"Look": tup("i", "l", succ("k"))}),
+            ("alone", None, {"Next": tup("i", "l", last)}, {"Passed": at}),
+            *(more if n > 2 else []),
+            ("enter", None, {"Passed": tup("i", top)}, {"Critical": "i"}),
+            ("leave", None, {"Critical": "i", "Wants": tup("i", "in")}, {"Idle": "i", "Wants": tup("i", "out")}),
+        ],
+    )  # fmt: skip
+
+
+def trains(n: int = 2, speeds: int = 3, way: int = 5) -> ColouredNet:
+    """Trains with a speed and a way to go, which they have to be slow enough for."""
+    slow, here, end = ("number", "Speed", 0), tup("t", "s", "d"), ("number", "Way", 0)
+    return ColouredNet(
+        {
+            "Train": _enum("t_", n, cyclic=False), "Speed": Range(0, speeds - 1), "Way": Range(0, way - 1),
+            "TSW": Product(("Train", "Speed", "Way")),
+        },
+        {"t": "Train", "s": "Speed", "d": "Way"},
+        {"Out": ("Train", all_("Train")), "On": ("TSW", None), "There": ("Train", None)},
+        [
+            ("start", None, {"Out": "t"}, {"On": tup("t", slow, ("number", "Way", way - 1))}),
+            ("faster", ("and", ("lessthan", "s", ("number", "Speed", speeds - 1)),
+             ("greaterthan", "d", ("number", "Way", 1))), {"On": here}, {"On": tup("t", succ("s"), pred("d"))}),
+            ("on", ("and", ("greaterthan", "s", slow), ("greaterthan", "d", end)),
+             {"On": here}, {"On": tup("t", "s", pred("d"))}),
+            ("slower", ("and", ("greaterthan", "s", slow), ("greaterthan", "d", end)),
+             {"On": here}, {"On": tup("t", pred("s"), pred("d"))}),
+            ("arrive", None, {"On": tup("t", slow, end)}, {"There": "t"}),
+            ("again", None, {"There": "t"}, {"Out": "t"}),
+        ],
+    )  # fmt: skip
+
+
 FAMILIES = {
     f.__name__: f
     for f in (
         shared_memory, dynamic_philosophers, quasi_certificate, fast_mutex, safe_bus, admissibility, resources, vending,
+        peterson, trains,
     )
 }  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from itertools import combinations, product
 
 from pn2code.contest.tables import Tables
 
@@ -187,6 +188,83 @@ def batches(n: int = 2) -> Tables:
     )
 
 
+def election(n: int = 3) -> Tables:
+    """A leader needs the votes of two others, who vote once until it is no leader any more."""
+    initial: dict[str, int] = {}
+    moves: list[Move] = []
+    for i in range(n):
+        follows, stands, leads, free, gone = (
+            f"{x}{i}" for x in ("follows", "stands", "leads", "free", "gone")
+        )
+        initial |= {follows: 1, stands: 0, leads: 0, free: 1, gone: 0}
+        moves += [
+            (f"stand{i}", [follows, free], [stands, gone]),
+            (f"step_down{i}", [leads, gone], [follows, free]),
+        ]
+        others = [j for j in range(n) if j != i]
+        for j in others:
+            vote = f"vote{j}for{i}"
+            initial[vote] = 0
+            moves += [
+                (
+                    vote,
+                    [stands, f"follows{j}", f"free{j}"],
+                    [stands, f"follows{j}", f"gone{j}", vote],
+                ),
+                (f"give_back{j}by{i}", [follows, vote, f"gone{j}"], [follows, f"free{j}"]),
+                (f"withdraw{i}for{j}", [stands, gone, f"leads{j}"], [follows, free, f"leads{j}"]),
+            ]
+        for j, k in combinations(others, 2):
+            votes = [f"vote{j}for{i}", f"vote{k}for{i}"]
+            moves.append((f"win{i}by{j}and{k}", [stands, *votes], [leads, *votes]))
+    return net(initial, moves)  # fmt: skip
+
+
+def crossing(n: int = 2) -> Tables:
+    """A gate that closes when a train is near, and opens when none is: trains are counted."""
+    initial = {"open": 1, "closed": 0, "closing": 0, "opening": 0, "near": 0, "room": n}
+    moves: list[Move] = [
+        ("close", ["open", "near"], ["closing", "near"]),
+        ("is_closed", ["closing"], ["closed"]),
+        ("open", {"closed": 1, "room": n}, {"opening": 1, "room": n}),
+        ("is_open", ["opening"], ["open"]),
+    ]
+    for i in range(n):
+        initial |= {f"far{i}": 1, f"comes{i}": 0, f"in{i}": 0, f"told{i}": 0}
+        moves += [
+            (f"come{i}", [f"far{i}"], [f"comes{i}", f"told{i}"]),
+            (f"count{i}", [f"told{i}", "room"], ["near"]),
+            (f"enter{i}", [f"comes{i}", "closed"], [f"in{i}", "closed"]),
+            (f"leave{i}", [f"in{i}", "near"], [f"far{i}", "room"]),
+        ]
+    return net(initial, moves)
+
+
+def balancing(n: int = 2) -> Tables:
+    """Clients of two servers, of which the one with fewer requests gets the next."""
+    initial: dict[str, int] = {}
+    moves: list[Move] = []
+    for s in "ab":
+        initial |= {f"idle_{s}": 1} | {f"load_{s}{k}": int(k == 0) for k in range(n + 1)}
+    for i in range(n):
+        initial |= {f"thinks{i}": 1, f"waits{i}": 0, f"asks{i}": 0}
+        initial |= {f"{x}{i}_{s}": 0 for x in ("queued", "served") for s in "ab"}
+        moves.append((f"ask{i}", [f"thinks{i}"], [f"waits{i}", f"asks{i}"]))
+        for a, b in product(range(n), repeat=2):
+            before = [f"load_a{a}", f"load_b{b}"]
+            s = "a" if a <= b else "b"
+            after = [f"load_a{a + (s == 'a')}", f"load_b{b + (s == 'b')}"]
+            moves.append((f"send{i}_{a}{b}", [f"asks{i}", *before], [f"queued{i}_{s}", *after]))
+        for s in "ab":
+            moves.append((f"serve{i}_{s}", [f"queued{i}_{s}", f"idle_{s}"], [f"served{i}_{s}"]))
+            moves += [
+                (f"end{i}_{s}{k}", [f"served{i}_{s}", f"waits{i}", f"load_{s}{k}"],
+                 [f"idle_{s}", f"thinks{i}", f"load_{s}{k - 1}"])
+                for k in range(1, n + 1)
+            ]  # fmt: skip
+    return net(initial, moves)
+
+
 FAMILIES: Mapping[str, Callable[[], Tables]] = {
     "kanban": kanban,
     "swimming pool": swimming_pool,
@@ -196,4 +274,7 @@ FAMILIES: Mapping[str, Callable[[], Tables]] = {
     "queens": queens,
     "cascade": lambda: cascade(1),
     "batches": batches,
+    "election": election,
+    "crossing": crossing,
+    "balancing": balancing,
 }

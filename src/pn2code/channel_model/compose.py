@@ -27,6 +27,7 @@ from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind
+from pn2code.verify.controller.running import meek
 
 
 def repeated_unseen(partition: Partition) -> frozenset[int]:
@@ -81,6 +82,11 @@ class Composer(LifeCycle):
         super().__init__(partition, rules, crashes)
         self.is_loose = loose
         self._own_places()
+        is_exact = not (loose or crashes.life_cycle)
+        self.meek = frozenset(meek(partition)) if is_exact else frozenset()
+        self.undecided = self._undecided()
+        self.fresh = self._fresh()
+        self.to_decide = {o: self.memory(o, "is to decide") for o in self.fresh}
         self._net_transitions()
         for o in range(len(self.sides)):
             self._publishing(o)
@@ -96,6 +102,33 @@ class Composer(LifeCycle):
         if not loose:
             self._rest()
 
+    def _fresh(self) -> dict[int, int]:
+        """Where scripts begin to look that wait for one of several messages: by owner, a place.
+
+        Such a script takes what comes first in its order of what is there. Whatever was there before its last
+        transition it finds, since it looks at all files after it; what has come since it may have missed. Loosely, and
+        with crashes, scripts may miss anything.
+        """
+        owners = {self.partition.transition_owner[t] for t in self.meek}
+        found = {o: self.memory(o, "looks anew") for o in sorted(owners)}
+        for o, place in found.items():
+            own = (p for p in self.undecided if self.partition.place_owner[p] == o)
+            if any(self.b.places[p].initial is not None for p in own):
+                self.b.forget_initial(self.sides[o].calm)
+                self.b.begin(place, self.b.dot)
+        return found
+
+    def _undecided(self) -> frozenset[int]:
+        """The places of scripts, without their messages, where one of several messages may be waited for."""
+        messages = {c.place for c in self.partition.channels}
+        inputs = (ArcKind.INPUT, ArcKind.BOTH)
+        return frozenset(
+            a.place
+            for t in self.meek
+            for a in self.partition.net.transitions[t].arcs
+            if a.kind in inputs and a.place not in messages
+        )
+
     # --- the net's own transitions ---------------------------------------------------------------
 
     def _net_transitions(self) -> None:
@@ -108,6 +141,7 @@ class Composer(LifeCycle):
             o = self.partition.transition_owner[t.index]
             side = self.sides[o]
             touches = any(a.place in reads for a in t.arcs)
+            decides = any(a.place in self.undecided and a.kind is not ArcKind.INPUT for a in t.arcs)
             arcs = [self.has(side.calm)]
             if o and touches:  # a script empties and writes after each transition
                 arcs = [self.off(side.calm), self.on(self.says_of[o])]
@@ -115,8 +149,12 @@ class Composer(LifeCycle):
                 # What a side repeats for ever in its memory must not keep the others from doing anything.
                 if o not in pauses:
                     pauses[o] = self.memory(o, "pause")
-                    self.step(f"{side.name}.goes on", "", self.off(pauses[o]), self.on(side.calm))
+                    self._goes_on(f"{side.name}.goes on", o, pauses[o], self.slow)
                 arcs = [self.off(side.calm), self.on(pauses[o])]
+            elif o in self.fresh and decides:
+                arcs = [self.off(side.calm), self.on(self.fresh[o])]
+            if o in self.fresh and decides and self.fresh[o] not in {a.place for a in arcs}:
+                arcs.append(self.on(self.to_decide[o]))
             self.b.add_arcs(t.index, arcs, reads)
         for f in self.files:
             name = self.partition.owners[f.channel.reader].name
@@ -172,9 +210,18 @@ class Composer(LifeCycle):
             following = self.memory(o, f"says {i + 1}")
             make(o, f, here, following)
             here = following
-        self.step(
-            f"{side.name}.has published", "", self.off(here), self.on(side.calm), at=self.local
-        )
+        self._goes_on(f"{side.name}.has published", o, here, self.local)
+
+    def _goes_on(self, name: str, o: int, here: int, at: int) -> None:
+        """A side has done something, and is calm, or looks at all files before it decides what comes next."""
+        calm = self.on(self.sides[o].calm)
+        if o not in self.fresh:
+            self.step(name, "", self.off(here), calm, at=at)
+            return
+        decides = self.to_decide[o]
+        self.step(name, "", self.off(here), self.b.absent(decides), calm, at=at)
+        anew = [self.off(decides), self.on(self.fresh[o])]
+        self.step(f"{name} and looks anew", "", self.off(here), *anew, at=at)
 
     def _next(self, q: Exp) -> Exp:
         """The number after a number."""
@@ -325,17 +372,20 @@ class Composer(LifeCycle):
         """Execution scheme, step 1: the files are looked at one after the other (I6).
 
         A look that finds nothing leaves no trace. So a round begins with the first file that holds something; those
-        before it were looked at earlier, and may have been filled since.
+        before it were looked at earlier, and may have been filled since. Where it matters (`_fresh`), a round that
+        begins with the first file, whatever it holds, comes before all others.
         """
         side = self.sides[o]
         own = [f for f in self.files if f.channel.reader == o]
         flags_first = self.rules.reads_flags_first or o != 0
         own.sort(key=lambda f: (f.channel.kind is ChannelKind.FLAG) != flags_first)
         looks = [self.memory(o, f"looks at {f.channel.file}") for f in own]
+        if o in self.fresh:
+            looks[0] = self.fresh[o]
         for i, f in enumerate(own):
             after = looks[i + 1] if i + 1 < len(own) else side.calm
             self._take(o, f, side.calm, after, "")
-            if i:
+            if i or o in self.fresh:
                 self._take(o, f, looks[i], after, " as well")
                 self._nothing(o, f, looks[i], after)
             self._refuse(o, f)

@@ -25,15 +25,24 @@ _CHILDREN = {
     "": frozenset({"pnml"}),
     "pnml": frozenset({"net"}),
     "net": frozenset({"page", "place", "transition", "arc"}),
-    "page": frozenset({"place", "transition", "arc"}),
+    "page": frozenset(
+        {"page", "place", "transition", "arc", "referencePlace", "referenceTransition"}
+    ),
     "place": frozenset({"initialMarking"}),
     "transition": frozenset[str](),
-    "arc": frozenset({"inscription"}),
+    "referencePlace": frozenset[str](),
+    "referenceTransition": frozenset[str](),
+    "arc": frozenset({"inscription", "type"}),
+    "type": frozenset[str](),
     "initialMarking": frozenset({"text"}),
     "inscription": frozenset({"text"}),
     "text": frozenset[str](),
 }
 """Element -> what is understood inside it."""
+_NORMAL = ("", "normal")
+"""Kinds of arcs that move tokens and do nothing else."""
+_DEEPEST = 50
+"""Pages inside one another; the front end does not look into deeper ones."""
 
 
 def tables_of(path: Path) -> Tables | None:
@@ -63,8 +72,11 @@ class _Reader:
         self.used: set[str] = set()
         self.initial: list[int] = []
         self.arcs: list[tuple[str, str, int]] = []
+        self.references: dict[str, tuple[str, str]] = {}
+        """Reference node -> its element, and what it stands for, which may be another one."""
         self.nets = 0
         self.pages = 0
+        """That are open."""
         self.within = [""]
         self.skipped = 0
         self.source = self.target = ""
@@ -83,27 +95,41 @@ class _Reader:
         """What was read."""
         pre: list[dict[int, int]] = [{} for _ in self.transition]
         post: list[dict[int, int]] = [{} for _ in self.transition]
-        place, transition = self.place, self.transition
+        if self.nets != 1:
+            raise _UnusualError
+        place, transition = self._with_references()
         for source, target, weight in self.arcs:
             if source in place:
                 arcs, p = pre[transition[target]], place[source]
             else:
                 arcs, p = post[transition[source]], place[target]
             arcs[p] = arcs.get(p, 0) + weight
-        if self.nets != 1 or self.pages > 1:
-            raise _UnusualError
         return Tables(
             tuple(self.initial),
             tuple(pre),
             tuple(post),
-            {name: (i,) for name, i in place.items()},
-            {name: (i,) for name, i in transition.items()},
+            {name: (i,) for name, i in self.place.items()},
+            {name: (i,) for name, i in self.transition.items()},
         )
+
+    def _with_references(self) -> tuple[dict[str, int], dict[str, int]]:
+        """The numbers of places and of transitions, by their ids and those of what stands for them."""
+        if not self.references:
+            return self.place, self.transition
+        found = {"referencePlace": {**self.place}, "referenceTransition": {**self.transition}}
+        for identity, (kind, ref) in self.references.items():
+            seen = {identity}
+            while ref in self.references and ref not in seen:
+                seen.add(ref)
+                ref = self.references[ref][1]
+            found[kind][identity] = found[kind][ref]
+        return found["referencePlace"], found["referenceTransition"]
 
     # --- elements ---------------------------------------------------------------------------------
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         outer = self.within[-1]
+        tag = tag.rpartition(":")[2]
         if tag in _SKIPPED and outer not in ("", "pnml"):
             self.skipped = 1
             self.parser.StartElementHandler = self._deeper
@@ -116,10 +142,12 @@ class _Reader:
         if begun is not None:
             begun(self, attributes)
 
-    def _end(self, tag: str) -> None:
-        self.within.pop()
+    def _end(self, _tag: str) -> None:
+        tag = self.within.pop()
         if tag == "arc":
             self.arcs.append((self.source, self.target, self.number))
+        elif tag == "page":
+            self.pages -= 1
         elif tag == "text":
             self._weight()
         elif tag in ("initialMarking", "inscription") and not self.is_read:
@@ -142,8 +170,10 @@ class _Reader:
             raise _UnusualError
 
     def page(self, _attributes: dict[str, str]) -> None:
-        """One of perhaps several pages, which the front end keeps apart."""
+        """One of perhaps several pages: ids are those of the whole file."""
         self.pages += 1
+        if self.pages > _DEEPEST:
+            raise _UnusualError
 
     def begin_place(self, attributes: dict[str, str]) -> None:
         """A place without tokens."""
@@ -155,9 +185,19 @@ class _Reader:
         """A transition without arcs."""
         self._new(self.transition, attributes)
 
+    def begin_reference(self, attributes: dict[str, str]) -> None:
+        """A place or transition of another page."""
+        identity = self._identity(attributes)
+        self.references[identity] = self.within[-1], attributes["ref"].strip()
+
+    def begin_type(self, attributes: dict[str, str]) -> None:
+        """What kind of arc it is."""
+        if attributes.get("value", "").strip().lower() not in _NORMAL:
+            raise _UnusualError
+
     def begin_arc(self, attributes: dict[str, str]) -> None:
         """An arc of weight 1."""
-        if "type" in attributes:
+        if attributes.get("type", "").strip().lower() not in _NORMAL:
             raise _UnusualError
         identity = attributes.get("id", "").strip()
         if identity:  # nobody refers to arcs
@@ -190,11 +230,14 @@ class _Reader:
             raise _UnusualError
 
     def _new(self, known: dict[str, int], attributes: dict[str, str]) -> None:
+        known[self._identity(attributes)] = len(known)
+
+    def _identity(self, attributes: dict[str, str]) -> str:
         identity = attributes["id"].strip()
         if not identity:
             raise _UnusualError
         self._use(identity)
-        known[identity] = len(known)
+        return identity
 
     def _use(self, identity: str) -> None:
         if identity in self.used:
@@ -211,6 +254,9 @@ _BEGUN: dict[str, Callable[[_Reader, dict[str, str]], None]] = {
     "page": _Reader.page,
     "place": _Reader.begin_place,
     "transition": _Reader.begin_transition,
+    "referencePlace": _Reader.begin_reference,
+    "referenceTransition": _Reader.begin_reference,
+    "type": _Reader.begin_type,
     "arc": _Reader.begin_arc,
     "text": _Reader.begin_text,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tarfile
 from pathlib import Path
 
@@ -43,6 +44,44 @@ def test_as_the_front_end_reads_it(tmp_path: Path) -> None:
     assert (tables.pre, tables.post) == (({0: 2}, {}), ({1: 2, 2: 1}, {}))
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("</page>", '</page><page id="two"/>'),
+        ("</page>", '<page id="two"/></page>'),
+        (
+            "</page>",
+            '</page><page id="two"><place id="s"><initialMarking><text>1</text></initialMarking></place>'
+            '<transition id="u"/><arc id="d" source="s" target="u"/></page>',
+        ),
+        ("</page>", '</page><page id="two"><arc id="d" source="r" target="alone"/></page>'),
+        ('<place id="r"/>', '<referencePlace id="r" ref="q"/>'),
+        (
+            '<place id="r"/>',
+            '<referencePlace id="r" ref="s"><name><text>s</text></name><graphics/></referencePlace>'
+            '<page id="two"><referencePlace id="s" ref="v"/></page><page id="three"><place id="v"/>'
+            '<referenceTransition id="u" ref="t"/><arc id="d" source="u" target="v"/></page>',
+        ),
+        ('target="q"/>', 'target="q"><type value="normal"/></arc>'),
+        ('target="r"', 'target="r" type="normal"'),
+        ("<?xml", "<?xml"),
+    ],
+)
+@pytest.mark.parametrize("prefix", ["", "x:"])
+def test_pages_and_references_as_the_front_end_reads_them(
+    tmp_path: Path, old: str, new: str, prefix: str
+) -> None:
+    assert old in NET
+    path = tmp_path / "model.pnml"
+    text = NET.replace(old, new)
+    if prefix:
+        text = re.sub(r"<(/?)(?=\w)", rf"<\1{prefix}", text).replace("xmlns=", "xmlns:x=")
+    path.write_text(text, encoding="utf-8")
+    tables = tables_of(path)
+    assert tables is not None
+    assert tables == _tables(load(path), Diagnostics())
+
+
 def test_large_numbers(tmp_path: Path) -> None:
     """Tables have no limit of their own."""
     path = tmp_path / "model.pnml"
@@ -58,19 +97,25 @@ def test_large_numbers(tmp_path: Path) -> None:
         ("<pnml ", '<!DOCTYPE pnml [<!ENTITY e "1">]><pnml '),
         ("</net>", '</net><net id="m" type="http://www.pnml.org/version-2009/grammar/ptnet"/>'),
         ("</pnml>", ""),
-        ("</page>", '</page><page id="two"/>'),
-        ("</page>", '<page id="two"/></page>'),
         ('<place id="r"/>', '<place id="p"/>'),
         ('<place id="r"/>', '<place id="t"/>'),
         ('<place id="r"/>', '<place id="a"/>'),
         ('<arc id="c"', '<arc id="a"'),
         ('<arc id="c"', '<arc id="p"'),
         ('<place id="r"/>', "<place/>"),
-        ('<place id="r"/>', '<referencePlace id="r" ref="q"/>'),
+        ('<place id="r"/>', '<referencePlace id="r" ref="r"/>'),
+        ('<place id="r"/>', '<referencePlace id="r" ref="t"/>'),
+        ('<place id="r"/>', '<referencePlace id="r" ref="nowhere"/>'),
+        ('<place id="r"/>', '<referencePlace id="r"/>'),
+        ('<place id="r"/>', '<referencePlace id="p" ref="q"/>'),
+        ('<place id="r"/>', '<referencePlace id="r" ref="s"/><referencePlace id="s" ref="r"/>'),
+        ('<place id="r"/>', '<referenceTransition id="r" ref="t"/>'),
         ('target="r"', 'target="nowhere"'),
         ('target="r"', 'target="alone"'),
         ('target="r"', 'target="r" type="inhibitor"'),
         ('target="q"/>', 'target="q"><type value="reset"/></arc>'),
+        ('target="q"/>', 'target="q"><type><text>inhibitor</text></type></arc>'),
+        ("</page>", '<page id="x">' * 50 + "</page>" * 51),
         ("<text> 2 </text>", "<text>0</text>"),
         ("<text> 2 </text>", "<text>Default,2</text>"),
         ("<text> 2 </text>", "2"),

@@ -369,7 +369,7 @@ class _Composer:
             steps=tuple(self.step_owner),
             clock=tuple(self.clock),
             probes=tuple(self.probes),
-            meek=tuple(_meek(self.partition)),
+            meek=tuple(meek(self.partition)),
             moments=Moments.of(self.partition, [*self.machines.values()], self._timeless()),
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
@@ -660,7 +660,7 @@ def _acts_early(partition: Partition, put: set[int]) -> bool:
     return False
 
 
-def _meek(partition: Partition) -> Iterator[int]:
+def meek(partition: Partition) -> Iterator[int]:
     """Transitions of robots that wait for a message which another one, that comes later in order, does not need."""
     net = partition.net
     channels = {c.place for c in partition.channels}

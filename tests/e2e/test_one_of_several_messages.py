@@ -1,0 +1,136 @@
+"""A script that waits for one of several messages, in the cell with its medium: what was there before it, it finds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.netbuilder import cpn
+from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
+from pn2code.channel_model.check import Answer, Run, whole
+from pn2code.channel_model.rules import Rules
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify.exploring.limits import Limits
+
+HEAD = """net cell
+  standard
+  page Top
+    place first : UNIT
+    place go : UNIT
+    place again : UNIT
+    place last : UNIT
+    place on : UNIT
+    place up : UNIT
+    place end : UNIT
+    subst Supervisor = Sup (first -> first, go -> go, again -> again, last -> last, on -> on, up -> up, end -> end)
+    subst Device = Dev (first -> first, go -> go, again -> again, last -> last, on -> on, up -> up, end -> end)
+  page Sup
+    place first port out : UNIT
+    place go port out : UNIT
+    place again port out : UNIT
+    place last port out : UNIT
+    place on port in : UNIT
+    place up port in : UNIT
+    place end port in : UNIT
+    place S0 = 1
+    place S1
+    place S2
+    place S3
+    place Finished
+    trans Begin
+      in S0 : ()
+      out S1 : ()
+      out go : ()
+%s
+    trans More
+      in S1 : ()
+      in on : ()
+      out S2 : ()
+      out again : ()
+    trans Last
+      in S2 : ()
+      in up : ()
+      out S3 : ()
+      out last : ()
+%s
+    trans End
+      in S3 : ()
+      in end : ()
+      out Finished : ()
+  page Dev
+    place first port in : UNIT
+    place go port in : UNIT
+    place again port in : UNIT
+    place last port in : UNIT
+    place on port out : UNIT
+    place up port out : UNIT
+    place end port out : UNIT
+    place W0 = 1
+    place W1
+    place W2
+    place W3
+    place Lost
+    trans Go
+      in W0 : ()
+      in go : ()
+      out W1 : ()
+      out on : ()
+    trans Again
+      in W1 : ()
+      in again : ()
+      out W2 : ()
+      out up : ()
+    trans First
+      in W2 : ()
+      in first : ()
+      out W3 : ()
+    trans Overtaken
+      in W2 : ()
+      in last : ()
+      out Lost : ()
+    trans Then
+      in W3 : ()
+      in last : ()
+      out W0 : ()
+      out end : ()
+"""
+CELL = """[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+order = "documented"
+[devices.Device]
+instance = "Device"
+"""
+CHANNELS = ("first", "go", "again", "last", "on", "up", "end")
+FIRST = "      out first : ()"
+
+
+def asked(folder: Path, begin: str, last: str, order: tuple[str, ...]) -> Answer:
+    """The cell with its medium."""
+    (folder / "cell.cpn").write_bytes(cpn(HEAD % (begin, last)))
+    channels = (f'[[channel]]\nplace = "{c}"\nfile = "{c}.txt"\nkind = "flag"\n' for c in order)
+    (folder / "cell.toml").write_text(CELL + "".join(channels))
+    opened, d = open_net(folder, {}), Diagnostics()
+    partition = divide(opened.flat, opened.config, d)
+    assert isinstance(partition, Partition), [str(x) for x in d]
+    found = whole(partition, {}, Run(Limits(threads=1), d), Rules())
+    assert not d.has_errors
+    return found
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize("order", [CHANNELS, CHANNELS[::-1]])
+def test_what_was_there_before_the_wait_is_found(tmp_path: Path, order: tuple[str, ...]) -> None:
+    """`first` is written a cycle before the device is told to go on, and so before it waits for one of two messages."""
+    assert asked(tmp_path, FIRST, "", order).answer == "yes"
+
+
+@pytest.mark.cc
+def test_what_comes_during_the_wait_may_be_missed(tmp_path: Path) -> None:
+    """The message that comes first in the script may be written after the other one has been seen."""
+    assert asked(tmp_path, "", FIRST, CHANNELS[::-1]).answer == "no"
