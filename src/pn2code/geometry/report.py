@@ -60,10 +60,11 @@ def _verdicts(layout: Layout) -> Iterator[str]:
     if layout.of_pairs == "yes" and layout.nearest is not None:
         near = layout.nearest.where
         seen = (
-            f"; the nearest that was measured: `{near.a}` and `{near.b}`, {1000.0 * near.distance:.0f} mm"
+            f"; of what was measured `{near.a}` and `{near.b}` came nearest, {_far(near.distance)}, "
             if near
             else ""
         )
+        seen += "but not all was, and others may come as near as that bound" if near else ""
         who = "arms or devices" if layout.devices else "arms"
         yield f"           two {who} keep at least {_millimetres(layout.nearest.least)} apart{seen}"
 
@@ -201,6 +202,10 @@ def _proposed(p: Proposal) -> Iterator[str]:
         yield "    (on these arcs: `if CONDITION then 1`() else empty`)"
     yield f"    (it is empty while {_each(p.while_, p.while_with, 'with')} is marked)"
     yield f"  {p.says}"
+
+
+def _far(distance: float) -> str:
+    return f"{1000.0 * distance:.0f} mm"
 
 
 def _each(names: Sequence[str], cases: Sequence[str], word: str) -> str:
