@@ -142,6 +142,17 @@ def _config(
     return replace(config, report=_report(r, data, config))
 
 
+_SAME_IN_LAYOUTS = {
+    "tools": "tools are the same in all layouts; where one lies is the place `rack`, which a layout may say: "
+    "`[layouts.NAME.places.RACK]`",
+    **{
+        key.name: f"what `{key.name}` says is the same in all layouts"
+        for key in FILE
+        if key.name not in (*LAYOUT.names(), "tools")
+    },
+}
+
+
 def _apply_layout(
     data: dict[str, Any], layouts: dict[str, Any], layout: str | None, r: Tables
 ) -> tuple[str, dict[str, Any]]:
@@ -152,7 +163,7 @@ def _apply_layout(
             r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
             return "", data
         at: KeyPath = ("layouts", name)
-        r.keys(table, at, LAYOUT.names())
+        r.keys(table, at, LAYOUT.names(), _SAME_IN_LAYOUTS)
         r.get(table, at, LAYOUT["description"])
         known = table_of(data.get("robots"))
         for key in (*PLACED, "devices"):

@@ -31,6 +31,9 @@ def _number_hint(value: object, kind: type | tuple[type, ...]) -> str:
     )
 
 
+_NO_HINTS: Mapping[str, str] = {}
+
+
 class Tables:
     """What the tables say; `at` gives the origin of a key, and `d` gets what is wrong."""
 
@@ -41,8 +44,14 @@ class Tables:
         self.d = d
         self._meant: set[tuple[KeyPath, str]] = set()
 
-    def keys(self, table: Mapping[str, Any], path: KeyPath, known: set[str]) -> None:
-        """Reports the keys of a table that are not known."""
+    def keys(
+        self,
+        table: Mapping[str, Any],
+        path: KeyPath,
+        known: set[str],
+        hints: Mapping[str, str] = _NO_HINTS,
+    ) -> None:
+        """Reports the keys of a table that are not known; `hints`: what to do where one of these stands there."""
         for key in table:
             if key not in known:
                 near = nearest(key, known - table.keys())
@@ -51,7 +60,9 @@ class Tables:
                     codes.CELL_KEY,
                     f"unknown key `{key}`" + (f" in {self._words(*path)}" if path else ""),
                     self.at(*path, key),
-                    hint=did_you_mean(key, known) or f"known keys: {', '.join(sorted(known))}",
+                    hint=hints.get(key)
+                    or did_you_mean(key, known)
+                    or f"known keys: {', '.join(sorted(known))}",
                 )
 
     def get(

@@ -127,6 +127,19 @@ class Pair:
 
 
 @frozen
+class Rest:
+    """An arm or device that rests in a zone.
+
+    Args:
+        at: where (the TCP pose, of a device where its axes are); from_start: already when a run begins.
+    """
+
+    robot: str
+    at: str
+    from_start: bool
+
+
+@frozen
 class Proposal:
     """A place that would keep pairs apart.
 
@@ -134,7 +147,9 @@ class Proposal:
         robots: that share the zone; transitions: of which not two may be under way at once.
         name: of the new place, with one token.
         takes, gives: the transitions of the supervisor that take the token, and that give it back.
-        while_: the places that are marked meanwhile.
+        takes_when, gives_when: of each of them in which case, in CPN ML; "": whenever it occurs.
+        while_: the places that are marked meanwhile; while_with: with which tokens, "": any.
+        rests: of what only rests in the zone: who, where, and whether it does from the start.
         works: whether the pairs keep apart with it, and the cell still comes to its end; says: what was found.
     """
 
@@ -144,6 +159,10 @@ class Proposal:
     takes: tuple[str, ...] = ()
     gives: tuple[str, ...] = ()
     while_: tuple[str, ...] = ()
+    takes_when: tuple[str, ...] = ()
+    gives_when: tuple[str, ...] = ()
+    while_with: tuple[str, ...] = ()
+    rests: tuple[Rest, ...] = ()
     works: bool = False
     says: str = ""
 
@@ -156,6 +175,12 @@ class Proposal:
             "takes": list(self.takes),
             "gives": list(self.gives),
             "while": list(self.while_),
+            "takes_when": [x or None for x in self.takes_when],
+            "gives_when": [x or None for x in self.gives_when],
+            "while_with": [x or None for x in self.while_with],
+            "rests": [
+                {"robot": x.robot, "at": x.at, "from_start": x.from_start} for x in self.rests
+            ],
             "works": self.works,
             "says": self.says,
         }

@@ -22,16 +22,18 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
+from pn2code.ml.core.terms import Exp
 from pn2code.net.flat import ArcKind, FlatNet
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot.commands import Command
 from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.enabling import running as evaluating
 from pn2code.semantics.game.marking import Binding
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
-from pn2code.semantics.values.data import Timed
-from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
 from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
@@ -132,6 +134,27 @@ class CellGraph:
             for s in t.variables
             if s.colset is not None and s not in outputs and s.name in element.binding
         }
+
+    def begins_with(self, place: int) -> Iterator[Value]:
+        """The tokens of an untimed place at the start, as the net has them."""
+        tokens = self._game.own_initial_marking.places[place]
+        assert isinstance(tokens, MultiSet)
+        yield from tokens
+
+    def value(self, element: Element, exp: Exp) -> Value:
+        """What an expression of its transition is; of what a code segment gives as well.
+
+        Raises GameError: that cannot be computed.
+        """
+        t = self.partition.net.transitions[element.transition]
+        values = element.binding
+        binding = {
+            s: from_json(s.colset, values[s.name])
+            for s in t.variables
+            if s.colset is not None and s.name in values
+        }
+        with evaluating(t.origin, f"an inscription of `{t.name}`"):
+            return self._game.evaluator.value(exp, binding)
 
     def delay(self, element: Element) -> float:
         """After how many units of model time the control token that a robot or device passes on is available.

@@ -3,10 +3,11 @@
     for proposal in proposals(graph, sides): ...
 
 A robot is commanded by the supervisor, so the place belongs there. A side is what one robot must not do while others do
-theirs: the states in which it is under way. Wanted are places of the supervisor that hold a token in all of them, the
-fewest states besides; the new place holds a token exactly while all of these are empty, which is a place invariant
-(Moody and Antsaklis, "Supervisory Control of Discrete Event Systems Using Petri Nets", 1998): whoever puts a token into
-one of them takes it, whoever takes one away gives it back.
+theirs: the states in which it is under way. Wanted are groups of tokens of the supervisor (those of a place, or of it
+those that have colours in common) of which one is held in all of them, and in the fewest states besides; the new
+place holds a token exactly while all of these are empty, which is a place invariant (Moody and Antsaklis, "Supervisory
+Control of Discrete Event Systems Using Petri Nets", 1998): whoever puts a token into one of them takes it, whoever
+takes one away gives it back.
 """
 
 from __future__ import annotations
@@ -18,9 +19,23 @@ from dataclasses import replace
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.token_groups import (
+    Conditions,
+    Group,
+    Held,
+    held_groups,
+    is_one,
+    is_same,
+    moving,
+    part_of,
+    shape_of,
+    told,
+)
 from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, Form
+from pn2code.semantics.game.token_game import GameError
+from pn2code.semantics.values.colours import TEXTS
 
 MOST_TRIED = 6
 """Ways to guard one zone."""
@@ -28,17 +43,29 @@ _CANDIDATES = 4
 
 
 @frozen
+class Hand:
+    """A transition that takes the token, or gives it back.
+
+    Args:
+        transition: by index.
+        is_always: whatever it is about; else only if it puts a token of a group and takes none away (or the reverse).
+    """
+
+    transition: int
+    is_always: bool
+
+
+@frozen
 class Guard:
     """A place to be.
 
     Args:
-        places: that are marked while the token is taken.
-        takes, gives: transitions, by index.
+        groups: of which one is held while the token is taken.
     """
 
-    places: tuple[int, ...]
-    takes: tuple[int, ...]
-    gives: tuple[int, ...]
+    groups: tuple[Group, ...]
+    takes: tuple[Hand, ...]
+    gives: tuple[Hand, ...]
 
 
 def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
@@ -47,46 +74,43 @@ def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard
     Args:
         sides: of each robot the states in which it is in the zone.
     """
-    candidates = [list(itertools.islice(_covers(graph, side), _CANDIDATES)) for side in sides]
+    held = held_groups(graph)
+    candidates = [list(itertools.islice(_covers(held, side), _CANDIDATES)) for side in sides]
     ways = sorted(itertools.product(*candidates), key=lambda way: sum(n for n, _ in way))
-    tried: set[tuple[int, ...]] = set()
+    tried: set[tuple[Group, ...]] = set()
     for way in ways:
-        places = tuple(sorted({p for _, own in way for p in own}))
-        if sum(len(own) for _, own in way) > len(places) or places in tried:
-            continue  # a place for two robots keeps nobody out
-        tried.add(places)
-        found = _guard(graph.partition, places)
-        marked = sum(graph.marked[0].get(p, 0) for p in places)
-        if found is not None and marked == 0:
+        groups = tuple(sorted({g for _, own in way for g in own}, key=_order))
+        if sum(len(own) for _, own in way) > len(groups) or groups in tried:
+            continue  # a group for two robots keeps nobody out
+        tried.add(groups)
+        found = _guard(graph, groups)
+        if found is not None and all(0 not in held.states[g] for g in groups):
             yield found
 
 
-def _covers(graph: CellGraph, side: Collection[int]) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Sets of places of the supervisor of which one is marked in each state of a side, with in how many states."""
-    partition = graph.partition
-    count = len(partition.net.places)
-    own = [
-        p for p in range(count)
-        if partition.place_owner[p] == 0 and p not in partition.final_places
-    ]  # fmt: skip
-    states: dict[int, set[int]] = {p: set() for p in own}
-    most: dict[int, int] = dict.fromkeys(own, 0)
-    for i, marking in enumerate(graph.marked):
-        for p, tokens in marking.items():
-            if p in states:
-                states[p].add(i)
-                most[p] = max(most[p], tokens)
-    wanted = set(side)
-    single = [p for p in own if most[p] == 1 and 0 not in states[p]]
-    whole = [(len(states[p]), (p,)) for p in single if wanted <= states[p]]
-    yield from sorted(whole)
+def _order(group: Group) -> tuple[int, int, str]:
+    return group.place, len(group.fields), repr(group.fields)
+
+
+def _covers(held: Held, side: Collection[int]) -> Iterator[tuple[int, tuple[Group, ...]]]:
+    """Sets of groups of which one is held in each state of a side, with in how many states."""
+    states, wanted = held.states, set(side)
+    single = sorted((g for g in states if held.most[g] == 1 and 0 not in states[g]), key=_order)
+    whole: list[tuple[int, tuple[Group, ...]]] = []
+    seen: set[tuple[int, frozenset[int]]] = set()
+    for g in single:
+        # What is told by fewer colours comes first, and is enough.
+        if wanted <= states[g] and (g.place, states[g]) not in seen:
+            seen.add((g.place, states[g]))
+            whole.append((len(states[g]), (g,)))
+    yield from sorted(whole, key=lambda x: (x[0], _order(x[1][0])))
     # Several, one after the other.
-    chosen: list[int] = []
+    chosen: list[Group] = []
     left = set(wanted)
     while left:
         best = max(
-            (p for p in single if all(states[p].isdisjoint(states[c]) for c in chosen)),
-            key=lambda p: (len(left & states[p]), -len(states[p])),
+            (g for g in single if all(states[g].isdisjoint(states[c]) for c in chosen)),
+            key=lambda g: (len(left & states[g]), -len(states[g])),
             default=None,
         )
         if best is None or not left & states[best]:
@@ -94,39 +118,46 @@ def _covers(graph: CellGraph, side: Collection[int]) -> Iterator[tuple[int, tupl
         chosen.append(best)
         left -= states[best]
     if len(chosen) > 1:
-        yield sum(len(states[p]) for p in chosen), tuple(sorted(chosen))
+        yield sum(len(states[g]) for g in chosen), tuple(sorted(chosen, key=_order))
 
 
-def _guard(partition: Partition, places: tuple[int, ...]) -> Guard | None:
+def _guard(graph: CellGraph, groups: tuple[Group, ...]) -> Guard | None:
     """Who takes and who gives; None: the net does not show it, or one would take two."""
-    takes: list[int] = []
-    gives: list[int] = []
+    partition = graph.partition
+    places = frozenset(g.place for g in groups)
+    changes: dict[int, set[int]] = {}
     for t in partition.net.transitions:
-        change = 0
-        for arc in t.arcs:
-            if arc.place not in places or arc.kind in (ArcKind.BOTH, ArcKind.INHIBITOR):
-                continue
-            if not _is_one(arc):
-                return None
-            change += 1 if arc.kind is ArcKind.OUTPUT else -1
-        if abs(change) > 1 or (change and partition.transition_owner[t.index] != 0):
+        arcs = list(moving(t, places))
+        if not all(map(is_one, arcs)) or (arcs and partition.transition_owner[t.index] != 0):
             return None
-        if change:
-            (takes if change > 0 else gives).append(t.index)
-    return Guard(places, tuple(takes), tuple(gives)) if takes else None
+        if arcs:
+            changes[t.index] = set()
+    try:
+        for e in graph.elements:
+            if not e.is_step and e.owner >= 0 and e.transition in changes:
+                t = partition.net.transitions[e.transition]
+                moved = (_sign(a) * _has(graph, groups, a, e.number) for a in moving(t, places))
+                changes[e.transition].add(sum(moved))
+    except GameError:
+        return None
+    if any(abs(change) > 1 for found in changes.values() for change in found):
+        return None
+    takes = tuple(Hand(t, found == {1}) for t, found in changes.items() if 1 in found)
+    gives = tuple(Hand(t, found == {-1}) for t, found in changes.items() if -1 in found)
+    return Guard(groups, takes, gives) if takes else None
 
 
-def _is_one(arc: FlatArc) -> bool:
-    """Whether it moves one token whatever happens."""
-    if arc.inscription is None:
-        return False
-    if arc.kind is ArcKind.OUTPUT:
-        return arc.inscription.form is Form.TOKEN
-    terms = arc.inscription.terms
-    if len(terms) != 1 or terms[0].whole:
-        return False
-    coefficient = terms[0].coefficient
-    return isinstance(coefficient, core.Lit) and coefficient.value == 1
+def _sign(arc: FlatArc) -> int:
+    return 1 if arc.kind is ArcKind.OUTPUT else -1
+
+
+def _has(graph: CellGraph, groups: Sequence[Group], arc: FlatArc, element: int) -> bool:
+    """Whether the token that an arc moves is one of a group."""
+    own = [g for g in groups if g.place == arc.place]
+    if any(not g.fields for g in own):
+        return True
+    value = graph.value(graph.elements[element], told(arc))
+    return any(g.has(graph.partition.net.places[arc.place].colset, value) for g in own)
 
 
 def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
@@ -134,11 +165,81 @@ def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
     b = Builder(partition.net)
     place = b.place(name, b.unit)
     b.begin(place, b.dot)
-    for t in guard.takes:
-        b.add_arcs(t, [b.take(place, b.dot)], {})
-    for t in guard.gives:
-        b.add_arcs(t, [Arc(ArcKind.OUTPUT, place, b.dot)], {})
+    conditions = Conditions(b, partition.net)
+
+    def arc(kind: ArcKind, hand: Hand) -> Arc:
+        if hand.is_always:
+            return Arc(kind, place, b.dot)
+        puts, takes = _puts_and_takes(partition.net, guard, hand)
+        if kind is ArcKind.OUTPUT:
+            puts, takes = takes, puts
+        none, one, groups = conditions.none, conditions.one, guard.groups
+        value = conditions.where(puts, groups, conditions.where(takes, groups, none, one), none)
+        return Arc(kind, place, value, Form.MULTISET)
+
+    for hand in guard.takes:
+        b.add_arcs(hand.transition, [arc(ArcKind.INPUT, hand)], {})
+    for hand in guard.gives:
+        b.add_arcs(hand.transition, [arc(ArcKind.OUTPUT, hand)], {})
     return replace(partition, net=b.net(), place_owner=(*partition.place_owner, 0))
+
+
+def _puts_and_takes(net: FlatNet, guard: Guard, hand: Hand) -> tuple[list[FlatArc], list[FlatArc]]:
+    arcs = list(moving(net.transitions[hand.transition], frozenset(g.place for g in guard.groups)))
+    return (
+        [a for a in arcs if a.kind is ArcKind.OUTPUT],
+        [a for a in arcs if a.kind is not ArcKind.OUTPUT],
+    )
+
+
+def held_in_words(net: FlatNet, group: Group) -> str:
+    """What tokens of a group have in common; "": it is all of a place."""
+    return " and ".join(
+        f"{f'#{label}' if label else 'the colour'} = {_text(net, group, label)}"
+        for label, _ in group.fields
+    )
+
+
+def _text(net: FlatNet, group: Group, label: str) -> str:
+    shape = dict(shape_of(net.places[group.place].colset))
+    return TEXTS.text(shape[label], dict(group.fields)[label])
+
+
+def when(net: FlatNet, guard: Guard, hand: Hand, *, takes: bool) -> str:
+    """In which case a transition takes the token, or gives it back, in CPN ML; "": whenever it occurs."""
+    if hand.is_always:
+        return ""
+    puts, taken = _puts_and_takes(net, guard, hand)
+    if not takes:
+        puts, taken = taken, puts
+    out = _one_of(net, guard, puts)
+    unless = _one_of(net, guard, taken)
+    return f"({out}) andalso not ({unless})" if unless else out
+
+
+def _one_of(net: FlatNet, guard: Guard, arcs: Sequence[FlatArc]) -> str:
+    """That one of the arcs moves a token of a group; "": none ever does."""
+    found = [
+        _is(net, group, told(arc))
+        for arc, group in itertools.product(arcs, guard.groups)
+        if arc.place == group.place
+    ]
+    return " orelse ".join(dict.fromkeys(x for x in found if x))
+
+
+def _is(net: FlatNet, group: Group, token: core.Exp) -> str:
+    """That a token is one of a group; "": it never is."""
+    own = []
+    for label, value in group.fields:
+        part = part_of(token, label)
+        if isinstance(part, core.Lit | core.Con):
+            if not is_same(part, value):
+                return ""
+            continue
+        is_shown = not label or isinstance(token, core.RecordExp)
+        shown = part.span.text if is_shown else f"#{label} ({token.span.text})"
+        own.append(f"{shown} = {_text(net, group, label)}")
+    return " andalso ".join(own) or "true"
 
 
 def stuck(graph: CellGraph) -> int:

@@ -60,10 +60,11 @@ def _verdicts(layout: Layout) -> Iterator[str]:
     if layout.of_pairs == "yes" and layout.nearest is not None:
         near = layout.nearest.where
         seen = (
-            f"; the nearest that was measured: `{near.a}` and `{near.b}`, {1000.0 * near.distance:.0f} mm"
+            f"; of what was measured `{near.a}` and `{near.b}` came nearest, {_far(near.distance)}, "
             if near
             else ""
         )
+        seen += "but not all was, and others may come as near as that bound" if near else ""
         who = "arms or devices" if layout.devices else "arms"
         yield f"           two {who} keep at least {_millimetres(layout.nearest.least)} apart{seen}"
 
@@ -172,18 +173,44 @@ def _run(run: Run | None) -> Iterator[str]:
     yield f"  a run of {_many(run.steps, 'step')} leads there{which}: {run.file or 'it could not be written'}"
 
 
+_FROM_START = (
+    "from the start of each run, so that no place alone keeps them apart: let HOME, or the way of the others, be "
+    "elsewhere, or send it away first and wait for its answer"
+)
+_LATER = "where a command has left it: bring it out (such as by `move_home`) before it answers"
+
+
 def _proposed(p: Proposal) -> Iterator[str]:
     yield ""
     zone = " and ".join(f"`{t}`" for t in p.transitions)
-    yield f"{zone} share a zone that the net does not guard"
+    if p.rests:
+        come = "come" if len(p.transitions) > 1 else "comes"
+        resting = " and ".join(dict.fromkeys(x.robot for x in p.rests))
+        rest_there = f"{resting} rest{'' if ' and ' in resting else 's'}"
+        yield f"{zone} {come} to where {rest_there}" if zone else f"{resting} rest where they touch"
+        for rest in p.rests:
+            yield f"  {rest.robot} rests at {rest.at}, {_FROM_START if rest.from_start else _LATER}"
+    else:
+        yield f"{zone} share a zone that the net does not guard"
     if not p.works:
         yield f"  {p.says}"
         return
     yield f"  proposal: a place `{p.name}` of the supervisor with one token `()`"
-    yield f"    taken by {', '.join(f'`{t}`' for t in p.takes)}"
-    yield f"    given back by {', '.join(f'`{t}`' for t in p.gives)}"
-    yield f"    (it is empty while {', '.join(f'`{x}`' for x in p.while_)} is marked)"
+    yield f"    taken by {_each(p.takes, p.takes_when, 'if')}"
+    yield f"    given back by {_each(p.gives, p.gives_when, 'if')}"
+    if any((*p.takes_when, *p.gives_when)):
+        yield "    (on these arcs: `if CONDITION then 1`() else empty`)"
+    yield f"    (it is empty while {_each(p.while_, p.while_with, 'with')} is marked)"
     yield f"  {p.says}"
+
+
+def _far(distance: float) -> str:
+    return f"{1000.0 * distance:.0f} mm"
+
+
+def _each(names: Sequence[str], cases: Sequence[str], word: str) -> str:
+    told = (f"`{n}`{f' {word} `{c}`' if c else ''}" for n, c in zip(names, cases, strict=True))
+    return ", ".join(told)
 
 
 def _many(n: int, what: str) -> str:

@@ -10,10 +10,11 @@ from collections.abc import Callable, Collection, Sequence
 
 from pn2code.cell.partition import Partition
 from pn2code.geometry import mutex
-from pn2code.geometry.answers import Proposal
+from pn2code.geometry.answers import Proposal, Rest
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.situations import Side, Situations
+from pn2code.geometry.where import stands_at
 from pn2code.geometry.words import reason
 
 Explore = Callable[[Partition], CellGraph | None]
@@ -22,6 +23,7 @@ _NONE = (
     "no places of the supervisor are marked exactly while these robots are there: let it command each of them by a "
     "transition of its own, wait for the answer, and bring an arm out of the zone before it rests"
 )
+_RESTS = "no places of the supervisor are marked exactly while these are there"
 
 
 class Zones:
@@ -34,6 +36,7 @@ class Zones:
     """
 
     def __init__(self, found: Situations, comparison: Comparison, explore: Explore) -> None:
+        self._cell = found.doing.planner.cell
         self._found, self._comparison, self._explore = found, comparison, explore
         self._stuck = mutex.stuck(found.graph)
 
@@ -49,11 +52,8 @@ class Zones:
         found, net = self._found, self._found.graph.partition.net
         arms = sorted({side[0] for side in zone})
         robots = tuple(found.robots[a] for a in arms)
-        names = tuple(
-            net.transitions[t].name if t >= 0 else f"{found.robots[arm]} at rest"
-            for arm, t, _ in sorted(zone)
-        )
-        names = tuple(dict.fromkeys(names))
+        names = tuple(dict.fromkeys(net.transitions[t].name for _, t, _ in sorted(zone) if t >= 0))
+        rests = tuple(self._rest(side) for side in sorted(zone) if side[1] < 0)
         sides = [
             frozenset[int]().union(*(found.states[s] for s in zone if s[0] == arm)) for arm in arms
         ]
@@ -68,15 +68,30 @@ class Zones:
                     robots,
                     names,
                     name,
-                    tuple(net.transitions[t].name for t in guard.takes),
-                    tuple(net.transitions[t].name for t in guard.gives),
-                    tuple(net.places[p].name for p in guard.places),
+                    tuple(net.transitions[h.transition].name for h in guard.takes),
+                    tuple(net.transitions[h.transition].name for h in guard.gives),
+                    tuple(net.places[g.place].name for g in guard.groups),
+                    tuple(mutex.when(net, guard, h, takes=True) for h in guard.takes),
+                    tuple(mutex.when(net, guard, h, takes=False) for h in guard.gives),
+                    tuple(mutex.held_in_words(net, g) for g in guard.groups),
+                    rests,
                     works=True,
                     says=says,
                 )
             tried = tried or problem
-        says = f"no place that was tried helps: {tried}" if tried else _NONE
-        return Proposal(robots, names, says=says)
+        none = _RESTS if rests else _NONE
+        says = f"no place that was tried helps: {tried}" if tried else none
+        return Proposal(robots, names, rests=rests, says=says)
+
+    def _rest(self, side: Side) -> Rest:
+        """Where who is at rest there rests."""
+        arm, _, number = side
+        found = self._found
+        name = found.robots[arm]
+        stands = (s.stands[arm] for s in found.situations)
+        stand = next(s for s in stands if s.number == number)
+        where = stands_at(self._cell.robot(name), stand)
+        return Rest(name, where, found.situations[0].stands[arm].number == number)
 
     def _tried(
         self, guard: mutex.Guard, name: str, zone: frozenset[Side], bad: Collection[Sides]

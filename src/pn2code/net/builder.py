@@ -276,7 +276,7 @@ class Builder:
             if arc.kind is not ArcKind.OUTPUT:
                 one = Lit(1, types.INT, self._span("1"))
                 found = (
-                    (Term(one, None, arc.value, None, False, origin),)
+                    (Term(one, None, arc.value, None, arc.form is Form.MULTISET, origin),)
                     if terms is None
                     else terms.terms(arc.value, arc.form)
                 )

@@ -106,6 +106,8 @@ class Cycle:
         late: whose answer may come later than the supervisor waits for it, each as a clause.
         stops: what arms may be told and cannot do, so that a run stops.
         has_stops: whether belts come to a stop: they may take no time.
+        bounded: with belts that come to a stop: what runs may do besides coming to the end, in whatever order;
+            None: that is not known, so that `at_most` proves nothing.
         never: transitions that occur in no run with planned times, though the net permits them.
     """
 
@@ -120,6 +122,7 @@ class Cycle:
     late: tuple[str, ...] = ()
     stops: tuple[str, ...] = ()
     has_stops: bool = False
+    bounded: tuple[str, ...] | None = None
     never: tuple[str, ...] = ()
 
     @property
@@ -141,6 +144,8 @@ class Cycle:
             return "no", "the cell can repeat something for as long as it likes"
         if not self.why and not self.endings:
             return "no", "no run comes to its end"
+        if self.why and self.at_most is not None and self.bounded is not None:
+            return self._bounded_within(limit)
         if self.why or self.most is None:
             # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
             return "unknown", self.why or "there is no longest cycle"
@@ -151,6 +156,17 @@ class Cycle:
             return "unknown", f"the longest cycle is as long as that, to {near(self.most - surely)}"
         if self.others:
             return "unknown", f"each run that comes to its end does, but {'; '.join(self.others)}"
+        return "yes", ""
+
+    def _bounded_within(self, limit: int) -> tuple[Within, str]:
+        """The same where only the bounds are known."""
+        assert self.at_most is not None and self.bounded is not None
+        if self.at_least is not None and self.at_least - TIE > limit:
+            return "no", f"no cycle takes less than {seconds_down(self.at_least)} s"
+        if self.at_most + TIE > limit:
+            return "unknown", f"{self.why}; no cycle takes more than {seconds_up(self.at_most)} s"
+        if self.bounded:
+            return "unknown", f"each run that comes to its end does, but {'; '.join(self.bounded)}"
         return "yes", ""
 
     def row(self) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from collections import deque
 
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, Doings
-from pn2code.timing.longest import Arc, Way, Ways, shortest
+from pn2code.timing.longest import Arc, Way, Ways, longest_inside, shortest
 from pn2code.timing.steps import Kind, kinds, stops
 
 MOST = 600_000
@@ -32,6 +32,7 @@ class Anyhow:
         why: why not all are known; "": they are.
         met: by element and number of the place: where the arm stands then (None: a device).
         adds_up: whether all time is that of commands, so that there is an upper bound; in a timed net programs wait.
+        halts: a script may find no transition that is possible, and stop the cell.
     """
 
     def __init__(self, doings: Doings) -> None:
@@ -45,6 +46,7 @@ class Anyhow:
         self._kinds = kinds(self.graph)
         self._stopped = stops(self.graph)
         self.faults: dict[tuple[int, int], str] = {}
+        self.halts = False
         self._enabled: dict[int, frozenset[int]] = {}
         self._shorter: dict[int, int] = {}
 
@@ -70,6 +72,7 @@ class Anyhow:
         for element, target in self.graph.arcs[state]:
             kind = self._kinds[element]
             if kind is Kind.ENDS or target in self._stopped:
+                self.halts |= kind is not Kind.ENDS
                 continue
             if told and not self._are_kept(told, element, target):
                 self.why = self.why or "overtaken"
@@ -139,6 +142,24 @@ class Anyhow:
                 return None
             totals.append(found.ns)
         return max(totals, default=0)
+
+    def is_sure(self) -> bool:
+        """Whether each run comes to an end, whatever anything takes, if no fault stops it."""
+        ends = self.ends()
+        if not all(arcs or i in ends for i, arcs in enumerate(self.successors)):
+            return False
+        return not Ways(self.successors, ends).never_end()
+
+    def inside(self, place: int) -> int | None:
+        """ns: for how long a place of the cell's model can be marked at most, if no command takes more than its time.
+
+        At each instant of that somebody is at work with what ends while the place is marked: whatever lets time end
+        there has begun with the end of something else. None: as long as one likes, or until nothing more happens.
+        """
+        nodes = [i for i, (state, _) in enumerate(self.nodes) if place in self.graph.marked[state]]
+        if not all(self.successors[i] for i in nodes):
+            return None
+        return longest_inside(self.successors, nodes)
 
     def most(self) -> tuple[Way | None, list[int]]:
         """The way on which most is done, and, where there is none, the elements of a repetition that takes time."""

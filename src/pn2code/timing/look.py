@@ -37,6 +37,7 @@ from pn2code.verify.exploring.limits import Limits
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
 AT_ONCE = "sensors and people answer at once"
 CLOCK_RUNS = "a unit of the net's time is a second (`--time-scale 1`)"
+_HALTS = "a script may come to where none of its transitions is possible, and stop the cell"
 _OPEN = {
     "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
@@ -203,7 +204,9 @@ class _Look:
             if anyhow.adds_up:
                 way, _ = anyhow.most()
                 at_most = None if way is None else way.ns
+        is_bounded = search.why == "belt" and not anyhow.why and anyhow.adds_up
         owed = [] if search.why else [*self._owed()]
+        most_owed = [*self._owed_anyhow()] if is_bounded else []
         work = [*self._owed_by_work()] if search.why and not anyhow.why else []
         late = tuple(self._late([*owed, *work]))
         # Of robots without an arm, and of what is told by more than tokens, nothing is known.
@@ -217,10 +220,11 @@ class _Look:
             at_most,
             tuple(self._others(late)),
             len(search.situations),
-            max((ns for _, ns in owed if ns is not None), default=None),
+            max((ns for _, ns in [*owed, *most_owed] if ns is not None), default=None),
             late,
             tuple(stops),
             has_stops=self.doings.stops,
+            bounded=tuple(self._bounded([*self._late(most_owed)])) if is_bounded else None,
             never=tuple(self._never()) if is_known else (),
         )
 
@@ -251,18 +255,32 @@ class _Look:
         yield from (f"a run may stop: {why}" for why in search.faults)
         if search.stuck:
             yield "a run may come to where nothing more happens, before its end"
+        yield from self._two_messages()
+        yield from late
+        if search.halts:
+            yield _HALTS
+        if search.is_endless and not search.cycle:
+            yield "a run may go on for ever, and never come to its end"
+        if not search.ends and not search.why:
+            yield "no run comes to its end"
+
+    def _two_messages(self) -> Iterator[str]:
         for channel in self.graph.partition.channels:
             if any(marked.get(channel.place, 0) > 1 for marked in self.graph.marked):
                 yield (
                     f"channel `{channel.name}` may come to hold two messages, and then the cell stops"
                 )
+
+    def _bounded(self, late: Sequence[str]) -> Iterator[str]:
+        """What runs may do that do not come to the end, in whatever order things end."""
+        anyhow = self.anyhow
+        yield from (f"a run may stop: {why}" for why in dict.fromkeys(anyhow.faults.values()))
+        yield from self._two_messages()
         yield from late
-        if search.halts:
-            yield "a script may come to where none of its transitions is possible, and stop the cell"
-        if search.is_endless and not search.cycle:
-            yield "a run may go on for ever, and never come to its end"
-        if not search.ends and not search.why:
-            yield "no run comes to its end"
+        if anyhow.halts:
+            yield _HALTS
+        if not anyhow.is_sure():
+            yield "a run may come to where nothing more happens, or go on for ever, before its end"
 
     def _never(self) -> Iterator[str]:
         """What the net permits, but planned times do not: such as a timer that is over before the answer, or never."""
@@ -288,6 +306,14 @@ class _Look:
             is_never_answered = not stuck.isdisjoint(owing)
             ns = None if is_never_answered else longest_inside(self.search.successors, owing)
             yield owner.phrase, ns
+
+    def _owed_anyhow(self) -> Iterator[tuple[str, int | None]]:
+        """The same in whatever order things end: no more than this."""
+        places = {p.name: p.index for p in self.graph.running.net.places}
+        for owner in self.graph.partition.owners:
+            place = places.get(f"cell.{owner.name}.owes")
+            if place is not None:
+                yield owner.phrase, self.anyhow.inside(place)
 
     def _owed_by_work(self) -> Iterator[tuple[str, int | None]]:
         """The same where not all situations are known: how long by what they do themselves while they owe it.

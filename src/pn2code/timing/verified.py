@@ -25,7 +25,7 @@ from pn2code.geometry.runs import write
 from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
-from pn2code.timing.answers import near, seconds_down, seconds_up
+from pn2code.timing.answers import Cycle, Layout, near, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
@@ -62,7 +62,7 @@ class Durations:
             where = f"layout `{x.name}`, " if x.name else ""
             c = x.cycle
             if c.why:
-                out.append(f"{where}cycle: not known: {c.why}")
+                out.append(f"{where}cycle: not known: {c.why}{_bounds(c)}")
             for e in c.endings if not c.why else ():
                 best = "not known" if e.least is None else f"{seconds_down(e.least)} s"
                 worst = "no limit" if e.most is None else f"{seconds_up(e.most)} s"
@@ -165,13 +165,16 @@ class _Judge:
         def open_(why: str) -> Answer:
             return Answer(a.about, "inconclusive", where + why, cell=True)
 
-        if layout.cycle.why:
-            return open_(layout.cycle.why)
+        cycle = layout.cycle
+        if cycle.why and cycle.bounded is None:
+            return open_(cycle.why)
         first, second = self._event(one, asked.first), self._event(one, asked.second)
         if first is None or second is None:
             return open_("of events with durations only `fires(..)` is looked at")
         limit = math.floor(float(asked.time) * NS)
         search = one.search
+        if cycle.why:
+            return self._bounded(a, one, layout, (first, second), limit)
         over = _over(search, second)
         wait = longest_wait(search.successors, first, second, over | search.ends, over)
         if wait.ns is None:
@@ -194,12 +197,35 @@ class _Judge:
         if not anyhow.why and anyhow.adds_up:
             slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
         is_kept = slow.ns is not None and slow.ns + TIE <= limit
+        clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
+        return self._yes(a, wait, AT_MOST if is_kept else PLANNED, *clock)
+
+    def _yes(self, a: Answer, wait: Wait, *assumes: str) -> Answer:
+        assert wait.ns is not None
         value = math.ceil((wait.ns + TIE) / (NS // 1000)) / 1000 if wait.way else 0.0
         config = self.opened.config
         at_once = [AT_ONCE] if config is not None and config.sensors else []
-        clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
-        assumes = (AT_MOST if is_kept else PLANNED, *clock, *at_once, NO_FAULT)
-        return Answer(a.about, "yes", value=value, cell=True, assumes=assumes)
+        all_of_them = (*assumes, *at_once, NO_FAULT)
+        return Answer(a.about, "yes", value=value, cell=True, assumes=all_of_them)
+
+    def _bounded(
+        self, a: Answer, one: Measured, layout: Layout, events: tuple[Is, Is], limit: int
+    ) -> Answer:
+        """Where belts come to a stop: a wait is at most as long as all that is done meanwhile, in whatever order."""
+        where = f"in layout `{layout.name}`: " if layout.name else ""
+        cycle, anyhow = layout.cycle, one.anyhow
+        slow = longest_wait(anyhow.successors, *events, anyhow.ends())
+        why = cycle.why
+        if slow.ns is not None:
+            stops = self.control.stops if self.control is not None else ""
+            others = [*([stops] if stops else []), *(cycle.bounded or ())]
+            if slow.ns + TIE > limit:
+                why = f"{cycle.why}; no wait is longer than {seconds_up(slow.ns)} s"
+            elif others:
+                why = f"where it comes, it comes in time, but {others[0]}"
+            else:
+                return self._yes(a, slow, AT_MOST)
+        return Answer(a.about, "inconclusive", where + why, cell=True)
 
     def _event(self, one: Measured, f: m.Formula) -> Is | None:
         """Whether an element is the event; None: the event is not one of steps alone."""
@@ -247,6 +273,13 @@ class _Judge:
         return Answer(
             a.about, verdict, "", evidence, value=value, cell=True, assumes=(PLANNED,)
         )  # fmt: skip
+
+
+def _bounds(cycle: Cycle) -> str:
+    """Where only they are known."""
+    if cycle.bounded is None or cycle.at_least is None or cycle.at_most is None:
+        return ""
+    return f"; at least {seconds_down(cycle.at_least)} s, and at most {seconds_up(cycle.at_most)} s"
 
 
 def _over(search: Search, second: Is) -> frozenset[int]:
