@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import re
+import time
 from pathlib import Path
 
 from helpers.counted import Lab
@@ -152,6 +153,9 @@ def something_else_in_the_place_of_a_file(lab: Lab) -> None:
 def another_supervisor(lab: Lab) -> None:
     folder = lab.fresh()
     with lab.started("odd", folder, lockstep=True) as first:
+        while not (folder / "shared" / "supervisor.status").exists():
+            assert first.running
+            time.sleep(0.01)
         done = lab.run("odd", folder=folder)
         said = f"another supervisor (pid {first.pid}) is running in {done.shared}; stop it, or choose another directory"
         assert done.code == 5 and said in done.error

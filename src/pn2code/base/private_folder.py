@@ -1,4 +1,4 @@
-"""The user's own cache folder: `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`."""
+"""The user's own cache folder: `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`; `tidy_folder` keeps it small."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ import os
 from pathlib import Path
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.tidy_folder import tidy_when_due
 
 
 def private_folder() -> Path | None:
     """A folder that only this user can write to, or None: what is loaded must not come from anyone else."""
-    return _found()[0]
+    folder, _ = _found()
+    if folder is not None:
+        tidy_when_due(folder)
+    return folder
 
 
 def without_folder() -> str:

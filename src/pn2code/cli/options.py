@@ -335,6 +335,7 @@ _OUTSIDE = frozenset(
     {
         "file-missing",
         "file-unreadable",
+        "geometry-no-library",
         "input-file",
         "input-missing",
         "report-unwritable",

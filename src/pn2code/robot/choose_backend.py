@@ -17,21 +17,16 @@ _COMPILED = (
 )
 
 
-def open_backend(
-    name: BackendName, cell: RobotCell, *, gui: bool = False, looks: bool = True
-) -> Backend:
-    """A backend for a cell. PyBullet is imported only when it is asked for.
+def expect_backend(name: BackendName, *, gui: bool = False) -> None:
+    """Says whether there is such a backend, before anything is made that needs it.
 
     Args:
-        gui: open its window.
-        looks: load what only pictures need (a second or so).
+        gui: its window is wanted.
 
     Raises BackendUnavailableError when there is no display for its window, or PyBullet is not installed.
     """
     if name == "fake":
-        from pn2code.robot.fake import FakeBackend
-
-        return FakeBackend(cell)
+        return
     if gui and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         # PyBullet would end the whole process here.
         raise BackendUnavailableError(
@@ -42,6 +37,24 @@ def open_backend(
             f"PyBullet is not installed: `pip install 'pn2code[cell]'` brings it{_COMPILED}. "
             "`--backend fake` needs none: it moves the arms exactly, without measuring clearances"
         )
+
+
+def open_backend(
+    name: BackendName, cell: RobotCell, *, gui: bool = False, looks: bool = True
+) -> Backend:
+    """A backend for a cell. PyBullet is imported only when it is asked for.
+
+    Args:
+        gui: open its window.
+        looks: load what only pictures need (a second or so).
+
+    Raises BackendUnavailableError as `expect_backend` does.
+    """
+    expect_backend(name, gui=gui)
+    if name == "fake":
+        from pn2code.robot.fake import FakeBackend
+
+        return FakeBackend(cell)
     from pn2code.robot.bullet import BulletBackend
 
     return BulletBackend(cell, gui=gui, looks=looks or gui)

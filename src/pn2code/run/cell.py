@@ -41,7 +41,7 @@ from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
 from pn2code.robot.backend import Backend, BackendName
-from pn2code.robot.choose_backend import open_backend
+from pn2code.robot.choose_backend import expect_backend, open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import condition_text
 from pn2code.robot.monitor import Monitor
@@ -136,7 +136,10 @@ class RunResult:
 
 
 def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
-    """Generates and builds the programs of a cell, reads its geometry. None when there are errors."""
+    """Generates and builds the programs of a cell, reads its geometry. None when there are errors.
+
+    Raises BackendUnavailableError before anything is written, when the cell cannot be run here.
+    """
 
     def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
         begin(net, config, d, is_started=True, given=options.input)
@@ -153,6 +156,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
             "A net without a cell is played by `pn2code simulate`",
         )
         return None
+    expect_backend(options.backend, gui=options.gui)
     generated = pipeline.generate(
         path,
         d,

@@ -83,11 +83,12 @@ def build(
     compiler, make = find_compiler(), shutil.which("make")
     if compiler is None or make is None:
         missing = [name for name, tool in (("a C compiler", compiler), ("make", make)) if not tool]
+        packages = [p for p, tool in (("gcc libc6-dev", compiler), ("make", make)) if not tool]
         d.error(
             TOOL_MISSING,
             f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} not installed",
             Origin(str(folder)),
-            hint="on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev make"
+            hint=f"on Debian or Ubuntu type: sudo apt-get install {' '.join(packages)}"
             + ("" if compiler else f"; {WITHOUT_ROOT}"),
         )
         return None

@@ -32,7 +32,7 @@ def version(cache: Path, **environment: str) -> str:
 
 
 def modules(cache: Path) -> list[Path]:
-    return sorted((cache / "pn2code" / "modules").rglob("main*.pyc"))
+    return sorted((cache / "pn2code" / "modules").rglob("pn2code/cli/main*.pyc"))
 
 
 def test_kept_where_python_must_not_write(tmp_path: Path) -> None:

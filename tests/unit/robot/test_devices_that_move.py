@@ -195,6 +195,7 @@ def test_primitives_name_axes_that_are_there(tmp_path: Path) -> None:
 # --- distances -----------------------------------------------------------------------------------
 
 
+@pytest.mark.bullet
 def test_an_arm_in_a_closed_door_is_a_collision_with_both_names() -> None:
     assert CELL is not None
     backend = BulletBackend(CELL, looks=False)
@@ -243,6 +244,7 @@ def swept() -> Any:
     out.backend.close()
 
 
+@pytest.mark.bullet
 def test_a_door_is_swept_wherever_it_can_be(swept: _Swept) -> None:
     """It is open before and after, and shut for a moment between: no two positions would show that."""
     comparison, planner = swept.comparison, swept.planner
@@ -258,6 +260,7 @@ def test_a_door_is_swept_wherever_it_can_be(swept: _Swept) -> None:
     assert ajar.outcome == "clear" and ajar.least > 0.0
 
 
+@pytest.mark.bullet
 def test_a_part_in_a_clamp_that_is_not_open_cannot_be_taken_away(swept: _Swept) -> None:
     assert CELL is not None
     planner = swept.planner

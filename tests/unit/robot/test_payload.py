@@ -154,6 +154,7 @@ def test_mistakes_in_what_an_arm_says(
 
 def test_moments_without_the_wrist_that_they_are_about(tmp_path: Path) -> None:
     """They would not be looked at, whatever the arm carries."""
+    pytest.importorskip("eaik")
     text = (MODELS / "ur5e.urdf").read_text().replace("meshes/", f"{MODELS}/meshes/")
     assert 'payload="5"' in text
     text = text.replace('payload="5"', 'payload="50" moments="1 1 1"')

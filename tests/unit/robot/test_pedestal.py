@@ -16,6 +16,8 @@ HERE = Origin("cell.toml")
 
 
 def cell(model: str, axes: int, folder: Path = MODELS, **base: float) -> RobotCell:
+    if model.startswith("ur"):
+        pytest.importorskip("eaik")
     home = {4: [0.0] * 4, 6: [0.0, -90.0, 90.0, 0.0, 0.0, 0.0]}[axes]
     robot = {"model": model, "tool": "none", "base": {"z": 0.7, **base}, "home": home}
     d = Diagnostics()

@@ -189,6 +189,7 @@ def legs() -> Iterator[_Legs]:
     out.backend.close()
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("name", ["joint", "line", "door"])
 def test_a_move_is_slow_enough_if_it_is_nowhere_too_fast(legs: _Legs, name: str) -> None:
     """The first link that is too fast tells its speed; the fastest of all is not below what samples show."""
@@ -200,6 +201,7 @@ def test_a_move_is_slow_enough_if_it_is_nowhere_too_fast(legs: _Legs, name: str)
     assert slow <= (4.0 if name == "joint" else 2.0)
 
 
+@pytest.mark.bullet
 def test_speeds_in_pieces_are_bounds(legs: _Legs) -> None:
     for leg in (legs.joint, legs.line, legs.door):
         _, track = legs.compared._track(leg, ())

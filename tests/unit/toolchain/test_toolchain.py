@@ -80,6 +80,19 @@ def test_missing_tools_say_what_to_type(tmp_path: Path, monkeypatch: pytest.Monk
     assert "pip install 'pn2code[compiler]'" in d.errors[1].hint
 
 
+def test_only_what_is_missing_is_to_be_installed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "cc").write_text("#!/bin/sh\n")
+    (tmp_path / "cc").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    d = Diagnostics()
+    assert build(tmp_path, (), d) is None
+    assert d.errors[0].message == "make is not installed"
+    assert d.errors[0].hint == "on Debian or Ubuntu type: sudo apt-get install make"
+
+
 ZIGLANG = """
 import os, sys
 os.environ["PATH"] = {path!r}
