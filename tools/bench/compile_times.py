@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -145,7 +145,7 @@ def measure_sizes(sizes: Sequence[int]) -> int:
     Args:
         sizes: numbers of transitions.
     """
-    kinds = {
+    kinds: dict[str, Callable[[int], str]] = {
         "lists, records, code, no two alike": ring,
         "coloured counters, no two alike": lambda n: counters(n, unlike=True),
         "coloured counters, 12 kinds": counters,

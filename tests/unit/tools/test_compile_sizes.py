@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 from tools.bench import compile_times
 
@@ -11,7 +13,7 @@ from helpers.netbuilder import flat
 @pytest.mark.parametrize(
     "written", [compile_times.ring, compile_times.counters, compile_times.plain]
 )
-def test_nets_have_as_many_transitions_as_asked_for(written) -> None:
+def test_nets_have_as_many_transitions_as_asked_for(written: Callable[[int], str]) -> None:
     assert len(flat(written(9)).transitions) == 9
 
 
