@@ -108,6 +108,7 @@ NEVER = {
     "./dev bench --monitor": "the same",
     "./dev bench --play": "the same, in a browser",
     "./dev bench --compile": "the same",
+    "./dev bench --compile --sizes 102 201 501 1002": "the same",
     "./dev bench --replay": "the same, in a browser",
     "./dev bench --live examples/riveting --repeat 3": "the same",
     "./dev site -o site": "runs of three cells in PyBullet; test_site has its first page",

@@ -136,6 +136,13 @@ def main() -> int:
         "--compile", action="store_true", help="only what compiling takes, by the size of the net"
     )
     parser.add_argument(
+        "--sizes",
+        type=int,
+        nargs="*",
+        metavar="N",
+        help="with --compile: by host, nets of N transitions",
+    )
+    parser.add_argument(
         "--against", type=Path, metavar="CHECKOUT", help="only commands, beside those of a checkout"
     )
     parser.add_argument("--play", action="store_true", help="only a click in the page of `play`")
@@ -166,6 +173,8 @@ def main() -> int:
         return replay.measure(options.replay_of, options.repeat, options.minutes)
     if options.against:
         return pairs.measure(options.against, options.repeat)
+    if options.compile and options.sizes is not None:
+        return compile_times.measure_sizes(options.sizes or compile_times.LARGE_SIZES)
     if options.compile:
         return compile_times.measure(min(options.repeat, 3))
     if options.database_15:

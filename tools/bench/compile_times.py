@@ -5,6 +5,9 @@ so that none of them share a C function. In others all places are counters of co
 transitions, and with no two alike. Told of each size:
 how long the generated C is, what generating and compiling it takes, and how fast the explorer is; in turn with `-O2`,
 with what `c_flags` has for large nets, and with what explorers of large nets have. Processor time.
+
+`--sizes` is another table: what the tools themselves do with nets of more and more transitions, for the explorer at
+first and for a large space, for the simulator and for the deployed supervisor.
 """
 
 from __future__ import annotations
@@ -12,24 +15,29 @@ from __future__ import annotations
 import os
 import resource
 import subprocess
+import sys
 import tempfile
 import time
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from random import Random
 
-from tests.helpers.netbuilder import flat
+from tests.helpers.netbuilder import flat, write
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c_flags
 from pn2code.emission.output import OutputFile
+from pn2code.simulate import programs as simulators
 from pn2code.toolchain import programs as toolchain
 from pn2code.verify.exploring import programs
 from pn2code.verify.exploring.programs import Sizes
 
 SIZES = (100, 200, 300, 600)
 COUNTED = (66, 200)
+LARGE_SIZES = (102, 201, 501, 1002)
+"""Threes: of the stations of `ring`."""
 STATES = 1_000_000
 """So many are explored, of each size; the ring has more."""
 WAYS = (("-O2",), ("-O2", *c_flags.QUICKER), programs.LARGE.net)
@@ -131,6 +139,87 @@ def measure(repeat: int) -> int:
     return 0
 
 
+def measure_sizes(sizes: Sequence[int]) -> int:
+    """Prints the compiler's time of every host as the tools call it, by the size of the net; one run each.
+
+    Args:
+        sizes: numbers of transitions.
+    """
+    kinds: dict[str, Callable[[int], str]] = {
+        "lists, records, code, no two alike": ring,
+        "coloured counters, no two alike": lambda n: counters(n, unlike=True),
+        "coloured counters, 12 kinds": counters,
+        "tokens `()`": plain,
+    }
+    print(
+        "| net | transitions | host | lines of C | generate, s | compile, s | ms a transition |",
+        "|---|---|---|---|---|---|---|",
+        sep="\n",
+    )
+    for kind, written in kinds.items():
+        for size in sizes:
+            for host, found in _hosts(written(size)).items():
+                lines, generated, compiled = found
+                print(
+                    f"| {kind} | {size} | {host} | {lines:,} | {generated:.1f} | {compiled:.2f} "
+                    f"| {1000 * compiled / size:.1f} |",
+                    flush=True,
+                )
+    return 0
+
+
+def plain(transitions: int) -> str:
+    """A ring of places and transitions without colours, two tokens going round, each transition with a neighbour."""
+    lines = ["net Plain", "  standard"]
+    lines += [f"  place P{i} : UNIT{' = 2`()' if i == 0 else ''}" for i in range(transitions)]
+    for i in range(transitions):
+        after = (i + 1) % transitions
+        lines += [f"  trans T{i}", f"    in P{i} : ()", f"    out P{after} : ()"]
+    return "\n".join(lines)
+
+
+def _hosts(text: str) -> dict[str, tuple[int, float, float]]:
+    """host -> lines of C, processor time of generating it, and of compiling it."""
+    net = flat(text)
+    found = {}
+    start = time.process_time()
+    made = programs.Generated()
+    if not made.generate(net, {}, Sizes.start(net, {}), Diagnostics()):
+        raise SystemExit("bench: the net cannot be generated")
+    explorer = made.files
+    generated = time.process_time() - start
+    for name, host in (("explorer, first", programs.QUICK), ("explorer, large", made.host)):
+        found[name] = (_lines(explorer), generated, _compiled_for(host, explorer))
+    start = time.process_time()
+    simulator = simulators.generated(net, {}, Diagnostics())
+    generated = time.process_time() - start
+    found["simulator"] = (_lines(simulator), generated, _compiled_for(simulators.HOST, simulator))
+    with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as name:
+        file = write(text, Path(name) / "net.cpn")
+        folder = Path(name) / "generated"
+        command = [sys.executable, "-m", "pn2code", "generate", str(file), "-o", str(folder)]
+        generated = _work(command, None)
+        lines = (folder / "net.c").read_text(encoding="utf-8").count("\n")
+        found["supervisor"] = (lines, generated, _work(["make", "-s", "net_own.o"], folder))
+    return found
+
+
+def _lines(files: tuple[OutputFile, ...] | None) -> int:
+    if files is None:
+        raise SystemExit("bench: the net cannot be generated")
+    return sum(f.text.count("\n") for f in files)
+
+
+def _compiled_for(host: toolchain.Host, files: tuple[OutputFile, ...]) -> float:
+    """Processor time of the compiler for the net alone, with what a host's nets are compiled with."""
+    compiler = toolchain.Compiler.find(host, Diagnostics())
+    if compiler is None:
+        raise SystemExit("bench: no C compiler")
+    generated = "".join(f.text for f in files)
+    own = tuple(f for f in host.flags if f != "-pthread")
+    return _compile(files, (*own, *toolchain.net_flags(host, compiler, generated)))
+
+
 def _measure(text: str, ways: tuple[tuple[str, ...], ...], repeat: int) -> None:
     net = flat(text)
     count = len(net.transitions)
@@ -141,7 +230,9 @@ def _measure(text: str, ways: tuple[tuple[str, ...], ...], repeat: int) -> None:
     if files is None:
         raise SystemExit("bench: the net cannot be generated")
     lines = sum(f.text.count("\n") for f in files)
-    compiled = [min(_compile(files, flags) for _ in range(repeat)) for flags in ways]
+    compiled = [
+        min(_compile(files, ("-DPN_MANY", *flags)) for _ in range(repeat)) for flags in ways
+    ]
     explored = _explore(files, ways, repeat)
     for flags, of_compiler, of_explorer in zip(ways, compiled, explored, strict=True):
         print(
@@ -159,7 +250,7 @@ def _compile(files: tuple[OutputFile, ...], flags: tuple[str, ...]) -> float:
         for f in (*runtime, *files):
             (room / f.path).parent.mkdir(parents=True, exist_ok=True)
             (room / f.path).write_text(f.text, encoding="utf-8")
-        command = ["cc", *toolchain.FLAGS, "-DPN_MANY", *flags, "-Iruntime/include", "-I."]
+        command = ["cc", *toolchain.FLAGS, *flags, "-Iruntime/include", "-I."]
         return _work([*command, "-c", "net.c"], room)
 
 

@@ -127,7 +127,7 @@ def _not_shared(
         "one program is not needed"
     )
     if lost:
-        hint = f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named} in CPN Tools"
+        hint = f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named}"
     elif bare:
         hint = (
             f"port `{bare[0].name}` of page `{bare[0].page}` is connected to it, but no transition there has an arc "

@@ -206,6 +206,13 @@ def _for_this_run() -> Path:
     return Path(folder.name)
 
 
+def net_flags(host: Host, compiler: Compiler, generated: str) -> tuple[str, ...]:
+    """What a compiler is told about this C of a net, after `FLAGS` and those of the host."""
+    is_large = c_flags.is_large(generated)
+    own = c_flags.for_large_nets(compiler.version) if is_large else ()
+    return (*c_flags.for_net(generated), *own, *host.net)
+
+
 def is_kept(host: Host, files: Sequence[OutputFile]) -> bool:
     """Whether the program has been built and kept."""
     kept, compiler = private_folder(), Compiler.find(host, Diagnostics())
@@ -258,8 +265,7 @@ class _Builder:
         self.library = folder / f"{host.name}-runtime-{_digest(tools)}.a"
         generated = "".join(f.text for f in self.files)
         self.is_large = c_flags.is_large(generated)
-        own = c_flags.for_large_nets(compiler.version) if self.is_large else ()
-        self.net_flags = (*c_flags.for_net(generated), *own, *host.net)
+        self.net_flags = net_flags(host, compiler, generated)
         tools += ["net", *self.net_flags] if self.net_flags else []
         self.program = folder / f"{host.name}-{_digest(tools, self.files)}"
 

@@ -142,6 +142,22 @@ class Generated:
     host: Host = HOST
     is_quick: bool = False
 
+    def generate(
+        self,
+        net: FlatNet,
+        storage: Mapping[str, str],
+        sizes: Sizes,
+        d: Diagnostics,
+        predicates: Sequence[Predicate] = (),
+    ) -> bool:
+        """Whether the net can be compiled with places of these sizes; if not, that was reported."""
+        lowered = _lowered(net, storage, sizes, d, predicates)
+        if lowered is None:
+            return False
+        self.files = emit_c.emit(lowered, pn2code.__version__)
+        self.host, self.sizes = _host(lowered), sizes
+        return True
+
 
 def generated(
     net: FlatNet,
@@ -205,13 +221,9 @@ def program(
         made: what was generated for the same net and predicates; gets what is generated here.
     """
     made = Generated() if made is None else made
-    if made.sizes != sizes:
-        lowered = _lowered(net, storage, sizes, d, predicates)
-        if lowered is None:
-            yield None
-            return
-        made.files = emit_c.emit(lowered, pn2code.__version__)
-        made.host, made.sizes = _host(lowered), sizes
+    if made.sizes != sizes and not made.generate(net, storage, sizes, d, predicates):
+        yield None
+        return
     is_soon = made.host == HOST and len(net.transitions) > MANY
     made.is_quick = quick and not is_soon and not programs.is_kept(made.host, made.files)
     host = QUICK if made.is_quick else made.host
