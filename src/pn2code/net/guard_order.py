@@ -9,7 +9,13 @@ search for the cheapest order, in which equal ones are taken as its queue happen
     [length l > 0, m = hd l]         the equation first
     [length l > 0, m = hd l, m > 1]  the equation second
 
-so that nothing can be built on it. `unsure`: what raises no exception in the order of the plan, and might in another.
+The search is a shortest path, from "all conditions and arcs are open" to "all variables are known" (CPN Tools' public
+sources). It is made for each group of variables that conditions and arcs connect. Steps cost: a token matched with a
+pattern 100, found by its known parts 20, an arc whose variables are known 10, a condition 2, an equation that binds 1,
+all values of a small colour set 1,000. Of paths that cost the same, one is taken as the queue holds them, so that
+nothing is built on it here.
+
+`unsure`: what raises no exception in the order of the plan, and might in another.
 `doubtful`: what may raise one in the order of the plan, and none in another.
 """
 
