@@ -64,7 +64,7 @@ from pn2code.verify.exploring.limits import (
     Reduction,
     cores,
 )
-from pn2code.verify.exploring.result import Exploration, Seen, shortened
+from pn2code.verify.exploring.result import Exploration, Seen, written
 from pn2code.verify.report import writing
 from pn2code.verify.report.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.report.progress import ProgressLine
@@ -88,6 +88,8 @@ EPILOG = """Examples:
   pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
 
+TEXTS_PART = 0.9
+"""Of the time that is left, what the texts of all colours may take; the rest is for printing them."""
 _CODES = {"no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}
 
 
@@ -365,10 +367,11 @@ def verify(
         said = conclude(looked, opened, asked, limits, folder, d, checks)
         if durations:
             said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
-        if (
-            in_full and deadline.is_over()
-        ):  # sorting all colours and making texts of them takes time, too
-            said = replace(said, found=shortened(said.found, MOST_COLOURS))
+        if in_full:  # sorting all colours and making texts of them takes time, too
+            said = replace(
+                said,
+                found=written(opened.flat, said.found, deadline.share(TEXTS_PART), MOST_COLOURS),
+            )
         if report_to is not None:
             subject = None
             if report_to.suffix.lower() in PAGES:

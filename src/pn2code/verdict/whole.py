@@ -15,6 +15,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
+from pn2code.net import guard_order
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
 from pn2code.verdict import channel_model, closed, controller, properties
@@ -139,6 +140,7 @@ class Said:
     def row(self) -> dict[str, Any]:
         """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""
         row = exploration_row(self.net, self.found)
+        row["guard_order"] = guard_order.rows(self.net)
         if self.answers:
             row["properties"] = [a.row() for a in self.answers]
         if self.control is not None:
@@ -326,6 +328,8 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     if error.get("binding"):
         values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
         notes.append(f"the occurrence with {values}")
+    elif t is not None and (said := guard_order.not_there(opened.flat, t.index)) is not None:
+        notes.append(said)
     if error.get("node") is None:
         notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.netbuilder import diagnose, flat
-from pn2code.net.guard_order import unsure
+from pn2code.net.guard_order import doubtful, not_there, rows, unsure
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.exploring.explore import nothing
@@ -108,3 +108,29 @@ def test_not_every_transition_gets_a_warning() -> None:
     many = text + "".join(trans.replace("trans T", f"trans T{i}") for i in range(7))
     said = [x for x in diagnose(many).items if x.code == "guard-order"]
     assert len(said) == 5 and said[-1].message.endswith("and so in 3 more transitions")
+
+
+@pytest.mark.parametrize(
+    ("guard", "arcs", "is_doubtful"),
+    [
+        ("hd l > 0, n > 1", "P : l|A : n", True),
+        ("hd l > 0, length l > 0", "P : l", True),
+        ("hd l > 0", "P : l|A : n", True),
+        ("hd l > 0", "P : l", False),
+        ("m = hd l, m > 1", "P : l", False),
+        ("m = hd l, length l > 0", "P : l", False),
+        ("length l > 0, hd l > 0", "P : l", False),
+        ("length l > 0 andalso hd l > 0", "P : l|A : n", True),
+    ],
+)
+def test_what_may_be_raised_here_alone(guard: str, arcs: str, is_doubtful: bool) -> None:
+    n = flat(net(guard, arcs))
+    assert bool(doubtful(n)) == is_doubtful
+    assert (not_there(n, 0) is not None) == is_doubtful
+    assert [r["where"] for r in rows(n)].count("here") == is_doubtful
+
+
+def test_both_directions_as_data() -> None:
+    (row,) = rows(flat(net("length l > 0, m = hd l", "P : l")))
+    assert row["transition"].endswith("T") and row["raises"] == "m = hd l"
+    assert (row["beside"], row["where"]) == ("length l > 0", "CPN Tools")

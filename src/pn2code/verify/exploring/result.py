@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
+from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.ml.core.colsets import Colset
@@ -22,6 +24,9 @@ LEAST_GROWING = 1_000
 GROWING = 0.2
 """... which is so when it does in more than this part of them."""
 FAIRNESS = ("impartial", "fair", "just", "none")
+_LOOKS = 256
+"""Colours of which texts are made between two looks at the clock."""
+_Item = TypeVar("_Item")
 
 
 @frozen
@@ -30,6 +35,7 @@ class Bounds:
 
     `lower_multiset` and `upper_multiset` are [[count, value], ...]; None: not computed. Of a multi-set with more
     colours than were wanted they have only so many; `lower_colours` and `upper_colours` say how many there are.
+    `lower_text` and `upper_text`: what is printed of them, if it has been made (`written`).
     """
 
     lower: int
@@ -38,6 +44,16 @@ class Bounds:
     upper_multiset: tuple[tuple[int, Any], ...] | None
     lower_colours: int = 0
     upper_colours: int = 0
+    lower_text: str | None = None
+    upper_text: str | None = None
+
+    def lower_written(self, colset: Colset) -> str | None:
+        """The lower multi-set bound as a text; None: not computed."""
+        return self.lower_text or multiset_text(colset, self.lower_multiset)
+
+    def upper_written(self, colset: Colset) -> str | None:
+        """The upper one."""
+        return self.upper_text or multiset_text(colset, self.upper_multiset)
 
 
 @frozen
@@ -400,10 +416,38 @@ def shortened(found: Exploration, most: int) -> Exploration:
             upper_multiset=own.upper_multiset and own.upper_multiset[:most],
             lower_colours=max(own.lower_colours, len(own.lower_multiset or ())),
             upper_colours=max(own.upper_colours, len(own.upper_multiset or ())),
+            lower_text=None,
+            upper_text=None,
         )
         for own in found.bounds
     )
     return replace(found, bounds=cut_bounds)
+
+
+def written(net: FlatNet, found: Exploration, deadline: Deadline, most: int) -> Exploration:
+    """With the texts of all multi-set bounds, or shortened if the time is over before they are made.
+
+    Reports, pages and JSON print the same texts, which takes little time beside making them.
+    """
+    if found.bounds is None:
+        return found
+    colsets = {place.index: place.colset for place in net.places}
+
+    def text(place: int, multiset: Sequence[tuple[int, Any]] | None) -> str | None:
+        return multiset_text(colsets[place], multiset, deadline)
+
+    try:
+        bounds = tuple(
+            replace(
+                own,
+                lower_text=text(i, own.lower_multiset),
+                upper_text=text(i, own.upper_multiset),
+            )
+            for i, own in enumerate(found.bounds)
+        )
+    except TimeIsOverError:
+        return shortened(found, most)
+    return replace(found, bounds=bounds)
 
 
 def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
@@ -422,8 +466,8 @@ def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
                 "id": place.id,
                 "lower": own.lower,
                 "upper": own.upper,
-                "lower_multiset": multiset_text(colset, own.lower_multiset),
-                "upper_multiset": multiset_text(colset, own.upper_multiset),
+                "lower_multiset": own.lower_written(colset),
+                "upper_multiset": own.upper_written(colset),
                 "lower_cut": cut(own.lower_multiset, own.lower_colours),
                 "upper_cut": cut(own.upper_multiset, own.upper_colours),
             }
@@ -436,11 +480,32 @@ def cut(found: Sequence[tuple[int, Any]] | None, colours: int) -> int | None:
     return None if found is None or len(found) >= colours else colours
 
 
-def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> str | None:
-    """As the real tool prints it, without stamps; None for None."""
+def multiset_text(
+    colset: Colset, found: Sequence[tuple[int, Any]] | None, deadline: Deadline | None = None
+) -> str | None:
+    """As the real tool prints it, without stamps; None for None.
+
+    Raises:
+        TimeIsOverError: the deadline has come before the text was made.
+    """
     if found is None:
         return None
-    values = [(from_json(colset, value), count) for count, value in found if count]
-    values.sort(key=lambda item: TEXTS.key(colset, item[0]))
-    lines = [f"{count}`{readable(TEXTS.text(colset, value))}" for value, count in values]
+    values = []
+    for count, value in _in_time(found, deadline):
+        if count:
+            decoded = from_json(colset, value)
+            values.append((TEXTS.key(colset, decoded), decoded, count))
+    values.sort(key=itemgetter(0))
+    lines = [
+        f"{count}`{readable(TEXTS.text(colset, value))}"
+        for _, value, count in _in_time(values, deadline)
+    ]
     return "++\n".join(lines) or "empty"
+
+
+def _in_time(items: Sequence[_Item], deadline: Deadline | None) -> Iterator[_Item]:
+    """The items; the clock is looked at before each of some hundred."""
+    for i, item in enumerate(items):
+        if deadline is not None and i % _LOOKS == 0 and deadline.is_over():
+            raise TimeIsOverError
+        yield item

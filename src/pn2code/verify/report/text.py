@@ -20,7 +20,7 @@ from pn2code.verify.answers.outcome import Counts, header
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import Control
-from pn2code.verify.exploring.result import Exploration, Graph, cut, multiset_text
+from pn2code.verify.exploring.result import Exploration, Graph, cut
 from pn2code.verify.report import control_text, properties_text
 
 _RULE = "-" * 72
@@ -140,7 +140,8 @@ def _boundedness(net: FlatNet, found: Exploration) -> str:
         for name, place in rows:
             own = found.bounds[place.index]
             multiset = (own.lower_multiset, own.upper_multiset)[pick]
-            lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
+            text = (own.lower_written, own.upper_written)[pick](place.colset)
+            lines += _row(name, text or "not computed", _NAME)
             colours = cut(multiset, (own.lower_colours, own.upper_colours)[pick])
             if colours is not None and multiset is not None:
                 lines.append(f"     {'':{_NAME}}({left_out(len(multiset), colours)})")

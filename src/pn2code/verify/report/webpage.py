@@ -10,7 +10,7 @@ import pn2code
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
-from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
@@ -20,7 +20,7 @@ from pn2code.verify.answers.path import Step, steps
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
-from pn2code.verify.exploring.result import Exploration, Trace, cut, multiset_text
+from pn2code.verify.exploring.result import Exploration, Trace, cut
 from pn2code.verify.report import control_text, html, properties_text
 from pn2code.verify.report.text import bounded_places, left_out
 
@@ -240,15 +240,19 @@ def _bounds(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
                 "name": name,
                 "lower": own.lower,
                 "upper": own.upper,
-                "lower_multiset": _multiset(place, own.lower_multiset, own.lower_colours),
-                "upper_multiset": _multiset(place, own.upper_multiset, own.upper_colours),
+                "lower_multiset": _multiset(
+                    own.lower_written(place.colset), own.lower_multiset, own.lower_colours
+                ),
+                "upper_multiset": _multiset(
+                    own.upper_written(place.colset), own.upper_multiset, own.upper_colours
+                ),
             }
         )
     return rows
 
 
-def _multiset(place: FlatPlace, found: Sequence[tuple[int, Any]] | None, colours: int) -> str:
-    text = multiset_text(place.colset, found) or ""
+def _multiset(written: str | None, found: Sequence[tuple[int, Any]] | None, colours: int) -> str:
+    text = written or ""
     if found is not None and cut(found, colours) is not None:
         text += f"\n({left_out(len(found), colours)})".replace("`", "")
     return text
