@@ -280,6 +280,20 @@ class TestRivetingCell:
         browser.open(shown.file, "#t=33.42")
         assert browser.ask("() => replay.page.clock.t") == 33.42
 
+    def test_the_address_of_a_step_leads_to_this_step(self, browser: Page) -> None:
+        """Times of steps have more digits than an address usually has: `#t=` must not name the moment before."""
+        steps = browser.ask("() => replay.page.course.steps")
+        early = browser.ask(
+            """() => [...replay.page.course.time.keys()]
+               .filter((i) => Number(replay.page.course.time[i].toFixed(3)) < replay.page.course.time[i] - 1e-6)
+               .map((i) => i + 1)"""
+        )
+        assert len(early) > 3
+        for k in (*early[:3], early[-1], steps):
+            browser.ask("(k) => (history.replaceState(null, '', '#'), replay.step(k))", k)
+            browser.wait("location.hash.length > 1")
+            assert browser.ask("() => (replay.page.fromAddress(), replay.page.clock.k)") == k
+
     def test_without_a_gpu_the_arms_move_on_while_the_rest_waits(self, browser: Page) -> None:
         drawn = browser.ask("""() => {
             const { page } = replay;
