@@ -18,6 +18,7 @@ from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
 from pn2code.replay import run as runs
+from pn2code.replay.arrays import packed, packed_reals
 from pn2code.replay.motion import Motion
 from pn2code.replay.page import page
 from pn2code.robot.transforms import Array
@@ -386,6 +387,29 @@ class TestRivetingCell:
         assert [
             url for url in browser.asked if url not in own and not url.startswith("data:")
         ] == []
+
+
+def test_a_gap_is_shown_as_long_as_it_is_there(tmp_path: Path, chromium: Any) -> None:
+    """It comes nearer within a step of the samples, stays however long nothing moves, and is gone when it is gone."""
+    shown = with_arm(described(tmp_path, PAIR))
+    notes = [(0.2, 0.1), (1.2, 0.02), (3.2, 1.0)]
+    shown["cell"]["gaps"] = {
+        "step": 0.5,
+        "near": 0.12,
+        "pairs": [["arm/tip", "wall"]],
+        "t": packed_reals([t for t, _ in notes], double=True),
+        "pair": packed([0, 0, 0]),
+        "distance": packed_reals([d for _, d in notes]),
+        "points": packed_reals([0.0, 0.0, 0.0, 0.1, 0.0, 0.0] * 3),
+    }
+    file = tmp_path / "replay.html"
+    file.write_text(page(shown), encoding="utf-8")
+    moments = {0.1: [], 0.2: [0.1], 0.7: [0.1], 0.95: [0.06], 1.2: [0.02], 3.1: [0.02], 3.2: []}
+    with opened(chromium) as browser:
+        browser.open(file)
+        for t, distances in moments.items():
+            found = browser.ask("(t) => replay.page.cell.gaps.at(t).map((g) => g.distance)", t)
+            assert found == pytest.approx(distances, abs=1e-6), t
 
 
 DRAWN_BY = """
