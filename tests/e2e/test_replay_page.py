@@ -412,6 +412,32 @@ def test_a_gap_is_shown_as_long_as_it_is_there(tmp_path: Path, chromium: Any) ->
             assert found == pytest.approx(distances, abs=1e-6), t
 
 
+def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
+    """Also where the window shows a part of the page, and of what occurs just then."""
+    file = tmp_path / "replay.html"
+    file.write_text(page(described(tmp_path, PAIR)), encoding="utf-8")
+    with opened(chromium, viewport={"width": 390, "height": 844}) as browser:
+        browser.open(file, "#step=1")
+        browser.ask("""() => {
+            const { net } = replay.page, [x, y, w, h] = net.window.view;
+            net.window.set([x + 5 * w, y, w / 2, h / 2], false);
+        }""")
+        browser.page.get_by_role("button", name="Fit").focus()
+        for _ in range(browser.page.locator(".sheet .active").count()):
+            browser.page.keyboard.press("Tab")
+            inside, width = browser.ask("""() => {
+                const own = document.activeElement, pane = own.closest("svg").getBoundingClientRect();
+                const box = own.getBoundingClientRect();
+                const shape = own.querySelector(":scope > rect, :scope > ellipse");
+                const { stroke, strokeWidth } = getComputedStyle(shape);
+                return [
+                    box.left < pane.right && box.right > pane.left && box.top < pane.bottom && box.bottom > pane.top,
+                    stroke === "rgb(11, 95, 196)" ? parseFloat(strokeWidth) : 0,
+                ];
+            }""")
+            assert inside and width >= 5
+
+
 DRAWN_BY = """
     for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
         const own = kind.prototype.getParameter;

@@ -131,5 +131,7 @@ def table(elements: Iterable[Element], runs: Sequence[str]) -> str:
     for e in elements:
         for lines in e.code or (Lines("", 0, 0),):
             where = (lines.file, lines.first or "", lines.last or "")
-            rows.writerow((e.name, e.kind, e.page, e.id, e.line, *where, *e.occurred))
+            rows.writerow(
+                (e.name, e.kind, e.page, e.id, e.line, *where, *(e.occurred or ("",) * len(runs)))
+            )
     return text.getvalue()
