@@ -7,6 +7,8 @@ import { shorten } from "./dom.js";
 /** Where the axis begins, and how high a line of a legend is. */
 export const LEFT = 108;
 export const LABEL = 11;
+/** An axis ends at so many times the limit: a singularity must not make all else a line. */
+const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 
 /**
@@ -30,7 +32,7 @@ export function charts(run) {
         high = Math.max(high, v * scale);
       }
     }
-    charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.max(high * 1.15, 2) });
+    charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.min(Math.max(high * 1.15, 2), MOST * limit) });
   }
   return charts;
 }
@@ -95,7 +97,7 @@ export function growCharts(drawn) {
       const v = curve.v[curve.v.length - 1] * chart.scale;
       if (!Number.isFinite(v)) continue;
       chart.low = Math.min(chart.low, Math.max(v * 0.85, 1));
-      chart.high = Math.max(chart.high, v * 1.15);
+      chart.high = Math.max(chart.high, Math.min(v * 1.15, MOST * chart.limit));
     }
   }
 }

@@ -1,11 +1,9 @@
 // @ts-check
 /** Small clearances at the moment: lines between the nearest points, red parts where they are too small. */
 
-import { upperBound } from "./course.js";
-
 const THREE = /** @type {any} */ (globalThis).THREE;
 
-/** How long a measured gap is shown after it was measured (s), in measuring intervals. */
+/** Of descriptions of earlier versions: how long a measured gap is shown after it was measured, in measuring intervals. */
 const STAYS = 2.5;
 const MOST = 12;
 
@@ -19,6 +17,9 @@ export class Gaps {
   constructor(scene, cell) {
     this.scene = scene;
     this.gaps = cell.gaps;
+    /** @type {number[][]} the notes of each pair */
+    this.notes = [];
+    this.sorted = 0;
     this.limit = cell.warningClearance;
     const geometry = new THREE.LineSegmentsGeometry();
     this.positions = new Float32Array(6 * MOST);
@@ -36,22 +37,51 @@ export class Gaps {
     this.drawn = "";
   }
 
+  /** Each pair has its own notes, in their order; a run that goes on brings new ones. */
+  sort() {
+    const { gaps } = this;
+    for (; this.sorted < gaps.t.length; this.sorted++) (this.notes[gaps.pair[this.sorted]] ??= []).push(this.sorted);
+  }
+
   /**
    * The gaps at a moment, the smallest first.
    * @param {number} t
    * @returns {Gap[]}
    */
   at(t) {
+    this.sort();
+    const found = this.notes.flatMap((notes) => this.of(notes, t) ?? []);
+    return found.sort((a, b) => a.distance - b.distance).slice(0, MOST);
+  }
+
+  /**
+   * The gap of a pair at a moment, if it is near then. It stays as it was noted, until a step of the samples before the
+   * next note.
+   * @param {number[]} notes
+   * @param {number} t
+   * @returns {Gap | null}
+   */
+  of(notes, t) {
     const { gaps } = this;
-    /** @type {Map<number, Gap>} */
-    const found = new Map();
-    const from = t - STAYS * gaps.lasts;
-    for (let i = upperBound(gaps.t, t + 1e-9) - 1; i >= 0 && gaps.t[i] >= from; i--) {
-      const pair = gaps.pair[i];
-      if (found.has(pair)) continue;
-      found.set(pair, { pair: gaps.pairs[pair], distance: gaps.distance[i], points: gaps.points.slice(6 * i, 6 * i + 6) });
+    let [low, high] = [0, notes.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (gaps.t[notes[middle]] <= t + 1e-9) low = middle + 1;
+      else high = middle;
     }
-    return [...found.values()].sort((a, b) => a.distance - b.distance).slice(0, MOST);
+    const i = notes[low - 1];
+    const { near = Infinity, step = 0, lasts = Infinity } = gaps;
+    if (i === undefined || gaps.distance[i] > near || t > gaps.t[i] + STAYS * lasts) return null;
+    const pair = gaps.pairs[gaps.pair[i]];
+    const k = notes[low];
+    const goes = Math.min(step, gaps.t[k] - gaps.t[i]);
+    const part = 1 - (gaps.t[k] - t) / goes;
+    if (!(part > 0) || gaps.distance[k] > near) {
+      return { pair, distance: gaps.distance[i], points: gaps.points.slice(6 * i, 6 * i + 6) };
+    }
+    const between = (/** @type {ArrayLike<number>} */ row, /** @type {number} */ a, /** @type {number} */ b) => row[a] + part * (row[b] - row[a]);
+    const points = Array.from({ length: 6 }, (_, n) => between(gaps.points, 6 * i + n, 6 * k + n));
+    return { pair, distance: between(gaps.distance, i, k), points };
   }
 
   /**

@@ -11,6 +11,8 @@ const LIT_S = 0.4;
 const STAY_MS = 700;
 /** Where texts of a whole page would be smaller (CSS pixels), what occurs is shown with its surroundings, this large. */
 const LEAST_TEXT = 5;
+/** What is seen beside an element to which the window has moved. */
+const BESIDE = 12;
 const NEAR_TEXT = 9;
 
 /** @typedef {import("./course.js").Course} Course */
@@ -214,7 +216,25 @@ export class NetView {
       node.onkeydown = (/** @type {KeyboardEvent} */ e) => {
         if (e.key === "Enter") act();
       };
+      node.onfocus = () => {
+        if (node.matches(":focus-visible")) this.bringIn(id);
+      };
     }
+  }
+
+  /**
+   * Moves the window to an element that a key has gone to, if it is not seen.
+   * @param {string} id
+   */
+  bringIn(id) {
+    const box = this.boxOf(id, "");
+    const { view } = this.window;
+    if (!box || !view) return;
+    const [x, y, w, h] = view;
+    const within = (/** @type {number} */ from, /** @type {number} */ size, /** @type {number} */ low, /** @type {number} */ length) =>
+      Math.max(Math.min(from, low - BESIDE), low + length + BESIDE - size);
+    const to = [within(x, w, box.x, box.width), within(y, h, box.y, box.height)];
+    if (to[0] !== x || to[1] !== y) this.window.set([...to, w, h], false);
   }
 
   /**

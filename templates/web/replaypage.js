@@ -10,6 +10,7 @@ import { byId, el } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
 import { Messages, Steps } from "./messages.js";
+import { Moments } from "./moment.js";
 import { NetView } from "./netview.js";
 import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
@@ -27,6 +28,7 @@ export class ReplayPage {
     this.run = data.runs[0];
     this.course = new Course(this.run);
     this.clock = this.makeClock();
+    this.written = new Moments(this.run, this.course);
     this.transition = -1;
     this.place = -1;
     document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
@@ -288,7 +290,7 @@ export class ReplayPage {
   address() {
     const { clock } = this;
     const isAlone = clock.k === this.course.stepAt(clock.t);
-    const hash = this.run.clock === "seconds" && isAlone ? `#t=${+clock.t.toFixed(3)}` : `#step=${clock.k}`;
+    const hash = this.run.clock === "seconds" && isAlone ? `#t=${this.written.write(clock.t)}` : `#step=${clock.k}`;
     if (location.hash === hash || (!location.hash && clock.t === 0)) return;
     clearTimeout(this.later);
     this.later = setTimeout(() => history.replaceState(null, "", hash), 250);

@@ -75,6 +75,17 @@ class TestPlaying:
         browser.page.get_by_text("`Put down` is not enabled").wait_for()
         assert position(browser) == 1
 
+    def test_a_name_wider_than_its_box_does_not_lie_in_the_way(
+        self, chromium: Any, tmp_path: Path
+    ) -> None:
+        text = 'page Top\n  place A : INT = 1`0\n  trans "A name that is much wider than its box"\n    both A : 0\n'
+        net = tmp_path / "wide.cpnt"
+        net.write_text(f"standard\n{text}", encoding="utf-8")
+        with served(net) as wide, opened(chromium) as browser:
+            visit(browser, wide)
+            browser.page.locator(".sheet .enabled").click()
+            at(browser, 1)
+
     def test_a_binding_is_chosen(self, browser: Page) -> None:
         transition(browser, "Take left").click(button="right")
         rows = browser.page.get_by_role("list", name="Enabled bindings").get_by_role("button")

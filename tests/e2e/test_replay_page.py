@@ -18,6 +18,7 @@ from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
 from pn2code.replay import run as runs
+from pn2code.replay.arrays import packed, packed_reals
 from pn2code.replay.motion import Motion
 from pn2code.replay.page import page
 from pn2code.robot.transforms import Array
@@ -280,6 +281,20 @@ class TestRivetingCell:
         browser.open(shown.file, "#t=33.42")
         assert browser.ask("() => replay.page.clock.t") == 33.42
 
+    def test_the_address_of_a_step_leads_to_this_step(self, browser: Page) -> None:
+        """Times of steps have more digits than an address usually has: `#t=` must not name the moment before."""
+        steps = browser.ask("() => replay.page.course.steps")
+        early = browser.ask(
+            """() => [...replay.page.course.time.keys()]
+               .filter((i) => Number(replay.page.course.time[i].toFixed(3)) < replay.page.course.time[i] - 1e-6)
+               .map((i) => i + 1)"""
+        )
+        assert len(early) > 3
+        for k in (*early[:3], early[-1], steps):
+            browser.ask("(k) => (history.replaceState(null, '', '#'), replay.step(k))", k)
+            browser.wait("location.hash.length > 1")
+            assert browser.ask("() => (replay.page.fromAddress(), replay.page.clock.k)") == k
+
     def test_without_a_gpu_the_arms_move_on_while_the_rest_waits(self, browser: Page) -> None:
         drawn = browser.ask("""() => {
             const { page } = replay;
@@ -372,6 +387,55 @@ class TestRivetingCell:
         assert [
             url for url in browser.asked if url not in own and not url.startswith("data:")
         ] == []
+
+
+def test_a_gap_is_shown_as_long_as_it_is_there(tmp_path: Path, chromium: Any) -> None:
+    """It comes nearer within a step of the samples, stays however long nothing moves, and is gone when it is gone."""
+    shown = with_arm(described(tmp_path, PAIR))
+    notes = [(0.2, 0.1), (1.2, 0.02), (3.2, 1.0)]
+    shown["cell"]["gaps"] = {
+        "step": 0.5,
+        "near": 0.12,
+        "pairs": [["arm/tip", "wall"]],
+        "t": packed_reals([t for t, _ in notes], double=True),
+        "pair": packed([0, 0, 0]),
+        "distance": packed_reals([d for _, d in notes]),
+        "points": packed_reals([0.0, 0.0, 0.0, 0.1, 0.0, 0.0] * 3),
+    }
+    file = tmp_path / "replay.html"
+    file.write_text(page(shown), encoding="utf-8")
+    moments = {0.1: [], 0.2: [0.1], 0.7: [0.1], 0.95: [0.06], 1.2: [0.02], 3.1: [0.02], 3.2: []}
+    with opened(chromium) as browser:
+        browser.open(file)
+        for t, distances in moments.items():
+            found = browser.ask("(t) => replay.page.cell.gaps.at(t).map((g) => g.distance)", t)
+            assert found == pytest.approx(distances, abs=1e-6), t
+
+
+def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
+    """Also where the window shows a part of the page, and of what occurs just then."""
+    file = tmp_path / "replay.html"
+    file.write_text(page(described(tmp_path, PAIR)), encoding="utf-8")
+    with opened(chromium, viewport={"width": 390, "height": 844}) as browser:
+        browser.open(file, "#step=1")
+        browser.ask("""() => {
+            const { net } = replay.page, [x, y, w, h] = net.window.view;
+            net.window.set([x + 5 * w, y, w / 2, h / 2], false);
+        }""")
+        browser.page.get_by_role("button", name="Fit").focus()
+        for _ in range(browser.page.locator(".sheet .active").count()):
+            browser.page.keyboard.press("Tab")
+            inside, width = browser.ask("""() => {
+                const own = document.activeElement, pane = own.closest("svg").getBoundingClientRect();
+                const box = own.getBoundingClientRect();
+                const shape = own.querySelector(":scope > rect, :scope > ellipse");
+                const { stroke, strokeWidth } = getComputedStyle(shape);
+                return [
+                    box.left < pane.right && box.right > pane.left && box.top < pane.bottom && box.bottom > pane.top,
+                    stroke === "rgb(11, 95, 196)" ? parseFloat(strokeWidth) : 0,
+                ];
+            }""")
+            assert inside and width >= 5
 
 
 DRAWN_BY = """

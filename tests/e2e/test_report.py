@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import shutil
 import subprocess
 from collections import Counter
 from collections.abc import Iterator
@@ -72,10 +73,18 @@ def broken(folder: Path) -> list[str]:
 
 @pytest.fixture(scope="module")
 def minimal(root: Path, quick_build: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("minimal") / "report"
+    """Of a net that is not called `cell`: files of runs are called as their nets."""
+    folder = tmp_path_factory.mktemp("minimal")
+    out, cell = folder / "report", folder / "parts"
+    shutil.copytree(root / "examples/minimal", cell)
+    (cell / "cell.cpn").rename(cell / "setting.cpn")
+    toml = (cell / "cell.toml").read_text(encoding="utf-8")
+    changed = toml.replace('file = "cell.cpn"', 'file = "setting.cpn"')
+    assert changed != toml
+    (cell / "cell.toml").write_text(changed, encoding="utf-8")
     options = ("--backend", "fake", "--durations")
     with forks():
-        done = pn2code("report", root / "examples/minimal", "-o", out, *options)
+        done = pn2code("report", cell, "-o", out, *options)
     assert done.returncode == 0, done.stdout + done.stderr
     return out
 
@@ -161,7 +170,7 @@ def test_traceability(minimal: Path) -> None:
     table = (minimal / "traceability.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(table.splitlines()))
     assert len(rows) == sum(len(e["code"]) or 1 for e in manifest["elements"])
-    steps = [json.loads(x) for x in (minimal / "run/cell.trace.jsonl").read_text().splitlines()]
+    steps = [json.loads(x) for x in (minimal / "run/setting.trace.jsonl").read_text().splitlines()]
     occurred = Counter(s["transition"] for s in steps if "transition" in s)
     for row in rows:
         lines = (minimal / "generated" / row["file"]).read_text().splitlines()

@@ -129,7 +129,15 @@ def with_arm(
             "kinds": {},
             "parts": [],
             "marks": [],
-            "gaps": {"lasts": 1.0, "pairs": [], "t": [], "pair": [], "distance": [], "points": []},
+            "gaps": {
+                "step": 0.02,
+                "near": 0.12,
+                "pairs": [],
+                "t": [],
+                "pair": [],
+                "distance": [],
+                "points": [],
+            },
             "warningClearance": 0.01,
         },
         "motion": {

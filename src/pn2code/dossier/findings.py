@@ -110,7 +110,7 @@ def _checked(said: Json) -> tuple[str, list[Finding]]:
         )
         for d in said["diagnostics"]
     ]
-    return f"{counts[0].upper()}{counts[1:]}; {len(rows)} remarks.", rows
+    return f"{counts[0].upper()}{counts[1:]}; {len(rows)} remark{'s' * (len(rows) != 1)}.", rows
 
 
 def _geometry(said: Json) -> tuple[str, list[Finding]]:

@@ -17,7 +17,6 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen
 
-TRACE = "cell.trace.jsonl"
 _ANCHOR = re.compile(r'<g id="(page-[0-9]+-[0-9]+)" class="[^"]*" data-id="([^"]*)"')
 
 
@@ -72,7 +71,7 @@ def read(programs: Path, runs: Sequence[Path]) -> tuple[Element, ...]:
         OSError: a file cannot be read.
     """
     manifest = json.loads((programs / "manifest.json").read_text(encoding="utf-8"))
-    counts = [_occurrences(run / TRACE) for run in runs]
+    counts = [_occurrences(_trace(run)) for run in runs]
     return tuple(
         Element(
             row["element"],
@@ -85,6 +84,12 @@ def read(programs: Path, runs: Sequence[Path]) -> tuple[Element, ...]:
         )
         for row in manifest["elements"]
     )
+
+
+def _trace(run: Path) -> Path:
+    """The trace of all steps of a run; it has the name of the cell's net."""
+    summary = json.loads((run / "summary.json").read_text(encoding="utf-8"))
+    return run / f"{summary['cell']}.trace.jsonl"
 
 
 def _occurrences(trace: Path) -> Counter[str]:
@@ -126,5 +131,7 @@ def table(elements: Iterable[Element], runs: Sequence[str]) -> str:
     for e in elements:
         for lines in e.code or (Lines("", 0, 0),):
             where = (lines.file, lines.first or "", lines.last or "")
-            rows.writerow((e.name, e.kind, e.page, e.id, e.line, *where, *e.occurred))
+            rows.writerow(
+                (e.name, e.kind, e.page, e.id, e.line, *where, *(e.occurred or ("",) * len(runs)))
+            )
     return text.getvalue()

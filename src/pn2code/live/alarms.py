@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pn2code.robot.kinematics import condition_text
+from pn2code.run.record import APART
 
 Json = dict[str, Any]
 
@@ -55,7 +56,7 @@ class Alarms:
                     f"(warning below {1000 * self.near:g} mm)"
                 )
                 self._once(key, at, gap.robot or "", words)
-            elif gap.distance > self.near / _OVER:
+            elif APART > gap.distance > self.near / _OVER:  # what is nearest may change to and fro
                 self._open.discard(key)
         for warning in picture["warnings"]:
             self._add(warning.t, "warning", warning.robot, warning.text)

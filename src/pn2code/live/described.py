@@ -9,7 +9,7 @@ from pn2code.reading.document import Document
 from pn2code.replay import cell, net, programs
 from pn2code.replay.description import VERSION
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.run.record import GAP_S
+from pn2code.run.record import NEAR
 
 Json = dict[str, Any]
 
@@ -60,7 +60,8 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
             ],
             "gaps": {
                 "pairs": [],
-                "lasts": GAP_S,
+                "step": robot_cell.motion.sample,
+                "near": NEAR,
                 "t": [],
                 "pair": [],
                 "distance": [],

@@ -21,6 +21,8 @@ from pn2code.live.alarms import Alarms
 from pn2code.live.player import Player
 from pn2code.replay import happenings
 from pn2code.replay.growing import GrowingCourse
+from pn2code.robot.backend import Clearance
+from pn2code.run.record import APART
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
 from pn2code.trace.merge import Merger
@@ -46,6 +48,7 @@ class News:
         self._course = GrowingCourse(partition.net)
         self._alarms = Alarms(config.report.warn_condition, near)
         self._pairs: dict[tuple[str, str], int] = {}
+        self._near: dict[tuple[str, str], tuple[float, Clearance]] = {}
         self._transition = {t.name: t.index for t in partition.net.transitions}
         self._party = {o.name: o.index for o in partition.owners}
         self._counts = dict.fromkeys(dict(config.report.count), 0)
@@ -109,6 +112,7 @@ class News:
         marks, parts = self._standing(picture)
         events = [n for line in picture["noted"] if (n := happenings.noted(line)) is not None]
         is_fresh, self._is_fresh = self._is_fresh, False
+        standing = list(self._near.values()) if is_fresh else []
         return {
             "fresh": is_fresh,
             "t": max(t, self._latest),
@@ -123,7 +127,7 @@ class News:
             "events": [*events, *self._alarms.news()],
             "marks": marks,
             "parts": parts,
-            "gaps": self._gaps(picture["gaps"]),
+            "gaps": self._gaps([*standing, *picture["gaps"]]),
             "joints": picture["joints"],
             "series": picture["series"],
             "limits": {
@@ -158,11 +162,15 @@ class News:
         bar["transition"] = self._transition.get(doing["transition"], -1)
         return bar
 
-    def _gaps(self, gaps: list[Any]) -> Json:
+    def _gaps(self, gaps: list[tuple[float, Clearance]]) -> Json:
         pairs = []
         rows: Json = {"t": [], "pair": [], "distance": [], "points": []}
         for t, gap in gaps:
             pair = (gap.a, gap.b)
+            if gap.distance < APART:
+                self._near[pair] = (t, gap)
+            else:
+                self._near.pop(pair, None)
             if pair not in self._pairs:
                 self._pairs[pair] = len(self._pairs)
                 pairs.append(list(pair))

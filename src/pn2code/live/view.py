@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 WHO = "the live page"
 _BUILDING_S = 20.0
-"""How long the server may take for the description, before anything runs."""
+"""How long the run waits for the server to take the description; after that it takes it while the cell runs."""
 _END_S = 6.0
 
 
@@ -131,8 +131,8 @@ class LiveView(Closing):
         if not self._handing.finish(_BUILDING_S):
             return  # the server does not read: nothing is told
         self._handing.give(Cell(partition, config, near, described))
-        if self._handing.finish(_BUILDING_S):
-            self._tap = Tap(self._handing, prepared.robot_cell, dict(config.report.count))
+        self._handing.finish(_BUILDING_S)
+        self._tap = Tap(self._handing, prepared.robot_cell, dict(config.report.count))
 
     def interrupted(self) -> str:
         """Who wants the run to stop; "": nobody."""

@@ -20,6 +20,9 @@ from pn2code.run.record import ActionRecord, MessageRecord, RunRecord
 
 Json = dict[str, Any]
 
+LEAST_M = 1e-4
+"""By how much a clearance may be wrong in a curve, however small it is."""
+
 
 def describe(record: RunRecord, partition: Partition, config: CellConfig, near: float) -> Json:
     """Parties, their bars, messages, events, curves.
@@ -133,7 +136,7 @@ def _curves(record: RunRecord, config: CellConfig, near: float) -> list[Json]:
         if not np.isfinite(values).any():
             continue
         limit = near if kind == "clearance" else config.report.warn_condition
-        t, v = thinned(np.asarray(record.sample_t), values)
+        t, v = thinned(np.asarray(record.sample_t), values, LEAST_M if kind == "clearance" else 0.0)
         rows.append(
             {
                 "kind": kind,
@@ -147,12 +150,15 @@ def _curves(record: RunRecord, config: CellConfig, near: float) -> list[Json]:
     return rows
 
 
-def thinned(t: Any, v: Any, share: float = 2e-3) -> tuple[Any, Any]:
-    """The samples without those that lie between their neighbours, as far as a chart of the values shows it."""
+def thinned(t: Any, v: Any, least: float, share: float = 2e-3) -> tuple[Any, Any]:
+    """The samples without those that lie between their neighbours, as far as anybody sees it.
+
+    A page writes the values beside its charts, whose axes are logarithmic: so it is a share of each value, or `least`,
+    by which what is left may be wrong there, however large others are.
+    """
     if len(t) < 3:
         return t, v
-    finite = v[np.isfinite(v)]
-    tolerance = share * max(float(np.ptp(finite)), 1e-12)
+    tolerance = np.maximum(share * np.abs(v), max(least, 1e-12))
     keep, last = [0], 0
     low, high = -np.inf, np.inf
     for i in range(1, len(t)):
@@ -169,8 +175,8 @@ def thinned(t: Any, v: Any, share: float = 2e-3) -> tuple[Any, Any]:
                 keep.append(i)
                 last = i
                 continue
-        low = max(low, (v[i] - tolerance - v[last]) / span)
-        high = min(high, (v[i] + tolerance - v[last]) / span)
+        low = max(low, (v[i] - tolerance[i] - v[last]) / span)
+        high = min(high, (v[i] + tolerance[i] - v[last]) / span)
     if keep[-1] != len(t) - 1:
         keep.append(len(t) - 1)
     return t[keep], v[keep]

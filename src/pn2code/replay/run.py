@@ -16,7 +16,7 @@ from pn2code.replay.trace import follow
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import inverse, matrix_of
 from pn2code.run.cell import RunResult
-from pn2code.run.record import GAP_S, RunRecord
+from pn2code.run.record import NEAR, RunRecord
 
 
 def describe(result: RunResult, motion: Motion, document: Document) -> Json:
@@ -58,7 +58,7 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": _parts(record, robot_cell, motion),
-            "gaps": _gaps(record),
+            "gaps": _gaps(record, robot_cell.motion.sample),
             "marks": _marks(record, robot_cell, motion, dict(config.report.count)),
         }
         for zone in described["cell"]["zones"]:
@@ -88,13 +88,14 @@ def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Jso
     ]
 
 
-def _gaps(record: RunRecord) -> Json:
-    """What was near to what, when: the pair, the distance (m), and the nearest points of both."""
+def _gaps(record: RunRecord, step: float) -> Json:
+    """What was near to what, from when on: the pair, the distance (m), and the nearest points of both."""
     pairs = {(g.a, g.b): 0 for _, g in record.gaps}
     number = {pair: i for i, pair in enumerate(pairs)}
     return {
         "pairs": [list(pair) for pair in pairs],
-        "lasts": GAP_S,
+        "step": step,
+        "near": NEAR,
         "t": packed_reals((t for t, _ in record.gaps), double=True),
         "pair": packed(number[g.a, g.b] for _, g in record.gaps),
         "distance": packed_reals(g.distance for _, g in record.gaps),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,10 @@ FloatArray = npt.NDArray[np.float64]
 
 NEAR = 0.12
 """m: clearances below this are kept with their points, to be shown."""
-GAP_S = 0.08
+SAME, STILL = 5e-5, 0.005
+"""m: a gap is noted anew when it has changed by more than the first, or one of its ends has moved by the second."""
+APART = 1.0
+"""m: the distance of a gap that is no longer near, whatever it is."""
 
 
 @frozen
@@ -157,8 +160,8 @@ class RunRecord:
     near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
     gaps: list[tuple[float, Clearance]] = field(default_factory=list)
-    """when which parts were closer than `NEAR`, at most once in `GAP_S` for each pair"""
-    _last_gap: dict[tuple[str, str], float] = field(default_factory=dict)
+    """which parts are closer than `NEAR` from when on, until the next note of the pair; `APART` ends it"""
+    _standing: dict[tuple[str, str], Clearance] = field(default_factory=dict)
 
     def sample(self, verdict: Verdict) -> None:
         """Adds one instant to the series."""
@@ -183,23 +186,36 @@ class RunRecord:
             self.series.setdefault(f"wrist.{seen.robot}", []).append(seen.conditioning.wrist)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
         devices = {s.robot for s in verdict.samples if s.is_device}
-        for gap in verdict.clearances or ():
-            # What a device is fixed to is always near.
-            if gap.kind == "robots" or gap.robot not in devices or gap.distance < 0.0:
-                self._note_gap(verdict.t, gap)
+        # What a device is fixed to is always near.
+        self._note_gaps(
+            verdict.t,
+            [
+                gap
+                for gap in verdict.clearances or ()
+                if gap.kind == "robots" or gap.robot not in devices or gap.distance < 0.0
+            ],
+        )
         for gap in verdict.warnings:
             key = (gap.a, gap.b)
             if gap.distance < self.near.get(key, (np.inf, 0.0))[0]:
                 self.near[key] = (gap.distance, verdict.t)
 
-    def _note_gap(self, t: float, gap: Clearance) -> None:
-        """Keeps what is near, and what is in the way, once in a while."""
-        is_wrong = gap.distance < -(gap.allowed or 0.0)
-        if (gap.allowed is not None or gap.distance > NEAR) and not is_wrong:
-            return
-        if is_wrong or t - self._last_gap.get((gap.a, gap.b), -np.inf) >= GAP_S:
-            self._last_gap[gap.a, gap.b] = t
-            self.gaps.append((t, gap))
+    def _note_gaps(self, t: float, measured: Collection[Clearance]) -> None:
+        """Keeps what is near, and what is in the way, when it begins, changes and ends."""
+        near: dict[tuple[str, str], Clearance] = {}
+        for gap in measured:
+            is_wrong = gap.distance < -(gap.allowed or 0.0)
+            if is_wrong or (gap.allowed is None and gap.distance <= NEAR):
+                pair = (gap.a, gap.b)
+                if pair not in near or gap.distance < near[pair].distance:
+                    near[pair] = gap
+        for pair in [pair for pair in self._standing if pair not in near]:
+            self.gaps.append((t, replace(self._standing.pop(pair), distance=APART)))
+        for pair, gap in near.items():
+            last = self._standing.get(pair)
+            if last is None or not _is_same(last, gap):
+                self._standing[pair] = gap
+                self.gaps.append((t, gap))
 
     def note_error(self, what: str, metres: float) -> None:
         """Keeps the greatest deviation of a kind, in mm."""
@@ -208,6 +224,12 @@ class RunRecord:
     def array(self, name: str) -> FloatArray:
         """A series as an array; empty if it was not sampled."""
         return np.asarray(self.series.get(name, []), dtype=np.float64)
+
+
+def _is_same(one: Clearance, two: Clearance) -> bool:
+    """Whether nobody who looks sees that it is another one."""
+    ends = zip((*one.point, *one.other), (*two.point, *two.other), strict=True)
+    return abs(one.distance - two.distance) <= SAME and all(abs(a - b) <= STILL for a, b in ends)
 
 
 def row_values(messages: list[MessageRecord], channel: str) -> list[tuple[float, ...]]:
