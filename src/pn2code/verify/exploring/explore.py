@@ -68,6 +68,8 @@ SEARCH_PART = 0.85
 """Of the time until a deadline, what an explorer may search; the rest is for telling what it has seen."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
+_LOOK_S = 0.05
+"""So often it is looked whether an explorer is to be ended."""
 
 
 def _nothing(_: Mapping[str, Any]) -> None:
@@ -464,9 +466,10 @@ def _run(
     assert process.stdout is not None and process.stderr is not None
     said: list[str] = []
     report: list[bytes] = []
+    reader = threading.Thread(target=_read, args=(process.stdout, report), daemon=True)
     listeners = (
         threading.Thread(target=_listen, args=(process.stderr, options, said, search), daemon=True),
-        threading.Thread(target=_read, args=(process.stdout, report), daemon=True),
+        reader,
     )
     for listener in listeners:
         listener.start()
@@ -479,9 +482,13 @@ def _run(
         patience = Patience(limits.processor_seconds, lambda: processor_time(process.pid))
     try:
         while True:
-            with suppress(subprocess.TimeoutExpired):
-                process.wait(0.05)
-                break
+            reader.join(
+                _LOOK_S
+            )  # its last word wakes us at once; `wait` with a limit would sleep and look
+            if not reader.is_alive():
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(_LOOK_S)
+                    break
             if not told and options.interrupted():
                 told = True
                 process.send_signal(signal.SIGINT)
