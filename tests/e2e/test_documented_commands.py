@@ -38,6 +38,8 @@ LONG = {
     "pn2code verify examples/sorting": CELLS,
     "pn2code verify examples/shared-zone --no-medium": CELLS,
     "pn2code verify examples/timed": "31,014 markings with their times, and the medium",
+    "pn2code check --geometry examples/riveting --layout good --jobs 1": "10 seconds; test_check_geometry has cells",
+    "pn2code check --geometry examples/riveting --layout paper --jobs 1": "the same",
     "pn2code check --geometry examples/shared-zone": "test_geometry looks at smaller cells; ./dev geometry at this one",
     "pn2code reach examples/riveting --layout paper --robot robot2": "10 seconds; test_reach_map has fewer bases",
     "pn2code run examples/handover --backend fake -o run": CELLS,
