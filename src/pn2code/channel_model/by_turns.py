@@ -26,7 +26,7 @@ from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import choose
 from pn2code.properties.questions import ENDLESS
-from pn2code.verify.controller.running import chunks
+from pn2code.verify.controller.running import chunks, hasty
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
@@ -99,6 +99,7 @@ def questions(made: ChannelModel, owners: list[int]) -> str:
         lines += chunks(f"owner {owner}", (t for t in everything if owners[t] == owner))
         own = (i for i, o in enumerate(made.partition.transition_owner) if o == owner)
         lines += chunks(f"{'choose' if owner else 'first'} {owner + 1}", own)
+    lines += chunks("meek", (t for t, is_shared in hasty(made.partition) if is_shared))
     lines.append("priorities own")
     lines += chunks("instant 0", everything)
     items = [f"within {made.sides[0].calm} 1 -"]  # operands are numbers of lines

@@ -28,7 +28,7 @@ from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.premises import COUNTED, IN_TURNS
-from pn2code.verify.controller.running import chunks
+from pn2code.verify.controller.running import chunks, hasty
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.programs import Sizes
@@ -199,18 +199,28 @@ def whole(
             "; messages take no model time, and time does not advance while something can happen"
         )
 
-    def full(limits: Limits) -> Answer:
+    def explored(made: ChannelModel, limits: Limits, choices: str) -> Answer:
         return _explored(
             WHOLE,
             _ASKED,
-            net,
+            made,
             storage,
             replace(run, limits=limits),
             assumes,
             judged=bool(partition.final_places),
-            choices=_choices(partition),
+            choices=choices,
             carried=partition,
         )
+
+    def full(limits: Limits) -> Answer:
+        found = explored(net, limits, _choices(partition))
+        if found.answer != "yes" or not any(hasty(partition)):
+            return found
+        made = compose(partition, rules, Crashes(life_cycle=False), hasty=True)
+        found = explored(made, limits, _choices(partition, is_hasty=True))
+        if found.answer != "no":
+            return found
+        return replace(found, answer="inconclusive", why=_HASTY, evidence=())
 
     first, most = run.limits.turns_from, run.limits.max_states or MOST_STATES
     if first is None or partition.net.timed or not partition.final_places:
@@ -236,6 +246,11 @@ def whole(
         return part
     return _in_turns(partition, storage, run, rules, assumes) or full(run.limits)
 
+
+_HASTY = (
+    "a script that looks for one of several messages while they come may take a transition although an earlier one is "
+    "possible, and that may do harm"
+)
 
 _OF_CELL = (
     "files are not looked at one by one: in the cell as it runs no channel holds a second message before the first one "
@@ -294,12 +309,14 @@ def _in_turns(
     return _reduced(shown, time.perf_counter() - began, f"{assumes}; {IN_TURNS}")
 
 
-def _choices(partition: Partition) -> str:
+def _choices(partition: Partition, *, is_hasty: bool = False) -> str:
     """Lines for the explorer: of what is enabled, each program does what comes first in the documented order."""
     lines: list[str] = []
     for owner in range(len(partition.owners)):
         own = (i for i, o in enumerate(partition.transition_owner) if o == owner)
         lines += chunks(f"{'choose' if owner else 'first'} {owner + 1}", own)
+    if is_hasty:
+        lines += chunks("meek", (t for t, is_shared in hasty(partition) if is_shared))
     return "".join(f"{line}\n" for line in lines)
 
 

@@ -27,6 +27,7 @@ from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind
+from pn2code.verify.controller.running import hasty as hasty_ones
 from pn2code.verify.controller.running import meek
 
 
@@ -65,9 +66,20 @@ def compose(
     extra: Extra | None = None,
     *,
     loose: bool = False,
+    hasty: bool = False,
 ) -> ChannelModel:
-    """The net of a cell with its channel model; `loose`: as `by_turns` needs it."""
-    composer = Composer(partition, rules, crashes, loose=loose)
+    """The net of a cell with its channel model.
+
+    Args:
+        partition: the cell.
+        rules: that the sides keep.
+        crashes: how many there may be.
+        extra: adds to it.
+        loose: as `by_turns` needs it.
+        hasty: scripts that decide while messages come (`running.hasty`) can do whatever their order of looks permits,
+            and more; else they look as if in the order of the files, and can do neither all of that nor more.
+    """
+    composer = Composer(partition, rules, crashes, loose=loose, hasty=hasty)
     if extra is not None:
         extra(composer)
     return composer.finish()
@@ -77,7 +89,13 @@ class Composer(LifeCycle):
     """Makes the net, part by part; public are the helpers for `Extra`."""
 
     def __init__(
-        self, partition: Partition, rules: Rules, crashes: Crashes, *, loose: bool = False
+        self,
+        partition: Partition,
+        rules: Rules,
+        crashes: Crashes,
+        *,
+        loose: bool = False,
+        hasty: bool = False,
     ) -> None:
         super().__init__(partition, rules, crashes)
         self.is_loose = loose
@@ -87,6 +105,8 @@ class Composer(LifeCycle):
         self.undecided = self._undecided()
         self.fresh = self._fresh()
         self.to_decide = {o: self.memory(o, "is to decide") for o in self.fresh}
+        self.hasty = {partition.transition_owner[t] for t, _ in hasty_ones(partition) if hasty}
+        self.looks_on: dict[int, int] = {}
         self._net_transitions()
         for o in range(len(self.sides)):
             self._publishing(o)
@@ -373,22 +393,41 @@ class Composer(LifeCycle):
 
         A look that finds nothing leaves no trace. So a round begins with the first file that holds something; those
         before it were looked at earlier, and may have been filled since. Where it matters (`_fresh`), a round that
-        begins with the first file, whatever it holds, comes before all others.
+        begins with the first file, whatever it holds, comes before all others. If scripts are hasty, they may see or
+        pass over what is there after that round, in any order, and decide late (`_looking_on`): they look in an order
+        of their own, more than once at a file, while messages come.
         """
         side = self.sides[o]
         own = [f for f in self.files if f.channel.reader == o]
         flags_first = self.rules.reads_flags_first or o != 0
         own.sort(key=lambda f: (f.channel.kind is ChannelKind.FLAG) != flags_first)
         looks = [self.memory(o, f"looks at {f.channel.file}") for f in own]
+        ends = [*looks[1:], side.calm]
+        following = ends
         if o in self.fresh:
             looks[0] = self.fresh[o]
+        if o in self.fresh and o in self.hasty:
+            following = self._looking_on(o, own)
+            ends = [*looks[1:], self.looks_on[o]]
         for i, f in enumerate(own):
-            after = looks[i + 1] if i + 1 < len(own) else side.calm
-            self._take(o, f, side.calm, after, "")
+            self._take(o, f, side.calm, following[i], "")
             if i or o in self.fresh:
-                self._take(o, f, looks[i], after, " as well")
-                self._nothing(o, f, looks[i], after)
+                self._take(o, f, looks[i], ends[i], " as well")
+                self._nothing(o, f, looks[i], ends[i])
             self._refuse(o, f)
+
+    def _looking_on(self, o: int, own: list[Files]) -> list[int]:
+        """A round in which a script sees of what is there whatever it likes; by file, where it is after that."""
+        side = self.sides[o]
+        looks = [self.memory(o, f"looks on at {f.channel.file}") for f in own]
+        following = [*looks[1:], side.calm]
+        self.looks_on[o] = looks[0]
+        for f, here, after in zip(own, looks, following, strict=True):
+            self._take(o, f, here, after, ", looking on")
+            file = f.channel.file
+            says = f"{side.name} does not look at {file} again"
+            self.step(f"{side.name}.passes over {file}", says, self.off(here), self.on(after))
+        return following
 
     def _take(self, o: int, f: Files, here: int, after: int, how: str) -> None:
         b, side, file = self.b, self.sides[o], f.channel.file

@@ -302,9 +302,10 @@ class Interpreter:
         empty = tuple(
             self._channel[name] for name in paths.files_in(condition) if not self.filled(name)
         )
+        # What came since the condition was asked is not among these files, so it would wake nobody (real time).
+        if evaluate(condition, self):
+            return None
         if not empty:
-            if evaluate(condition, self):
-                return None  # the last file was filled between the two looks (real time)
             raise ScriptError("this wait can never end: all its files hold messages")
         return AwaitFile(empty, self._line)
 

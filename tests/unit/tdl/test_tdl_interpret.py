@@ -428,3 +428,38 @@ def test_a_file_filled_between_two_looks_ends_the_wait() -> None:
     request = Interpreter(program, LateFiles()).resume()
     assert isinstance(request, Fault)
     assert request.message == "7"
+
+
+@pytest.mark.parametrize("looks", range(8))
+@pytest.mark.parametrize(
+    "condition", ["filled(f) or filled(g)", "filled(f) and filled(f) or filled(g)"]
+)
+def test_a_file_filled_while_the_wait_begins_is_never_waited_past(
+    condition: str, looks: int
+) -> None:
+    """After any look: the script goes on, or is woken by the file, although the other one stays empty for ever."""
+
+    class LateFiles:
+        """`f` is filled after some looks at files."""
+
+        seen = 0
+
+        def read(self, name: str) -> tuple[int, ...] | None:
+            self.seen += 1
+            return (7,) if name == "f" and self.seen > looks else None
+
+        def clear(self, name: str) -> None: ...
+
+        def write(self, name: str, values: tuple[object, ...]) -> None: ...
+
+    declared = 'input f "f.txt" : int input g "g.txt" : int var k : int'
+    program = checked(script(f"wait until {condition} read f into k stop k", declared))
+    files = LateFiles()
+    interpreter = Interpreter(program, files)
+    request = interpreter.resume()
+    if isinstance(request, AwaitFile):
+        assert "f" in request.names
+        files.seen = looks  # it is filled now at the latest
+        request = interpreter.resume()
+    assert isinstance(request, Fault)
+    assert request.message == "7"
