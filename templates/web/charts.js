@@ -10,6 +10,24 @@ export const LABEL = 11;
 /** An axis ends at so many times the limit: a singularity must not make all else a line. */
 const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+/** Below the title of a chart its legend begins. */
+const LEGEND = 21;
+
+/**
+ * How high a chart must be so that its legend names all of its curves.
+ * @param {any[]} drawn
+ */
+export function legendHeight(drawn) {
+  return LEGEND + LABEL * Math.max(...drawn.map((chart) => chart.curves.length), 0);
+}
+
+/**
+ * Colour of a curve, and whether it is dashed since another one has this colour already.
+ * @param {number} i
+ */
+function look(i) {
+  return { colour: CURVES[i % CURVES.length], isDashed: Math.floor(i / CURVES.length) % 2 === 1 };
+}
 
 /**
  * Curves that share a chart.
@@ -62,7 +80,9 @@ export function drawChart(c, axis, chart, y, w) {
   c.stroke();
   c.setLineDash([]);
   chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-    c.strokeStyle = CURVES[i % CURVES.length];
+    const { colour, isDashed } = look(i);
+    c.strokeStyle = colour;
+    c.setLineDash(isDashed ? [6, 4] : []);
     c.lineWidth = 1.5;
     c.beginPath();
     let isOpen = false;
@@ -81,9 +101,10 @@ export function drawChart(c, axis, chart, y, w) {
     c.stroke();
   });
   c.restore();
-  chart.curves.slice(0, 4).forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-    c.fillStyle = CURVES[i % CURVES.length];
-    c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 21 + i * LABEL);
+  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
+    const { colour, isDashed } = look(i);
+    c.fillStyle = colour;
+    c.fillText(shorten(`${isDashed ? "- " : ""}${curve.of.replace(/^(scene|self)\./, "$1 ")}`, 14), 8, y + LEGEND + i * LABEL);
   });
 }
 

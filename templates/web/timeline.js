@@ -1,7 +1,7 @@
 // @ts-check
 /** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
 
-import { LEFT, charts, growCharts } from "./charts.js";
+import { LEFT, charts, growCharts, legendHeight } from "./charts.js";
 import { growLanes, lanesOf } from "./lanes.js";
 import { GAP, HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
 
@@ -52,6 +52,8 @@ export class Timeline {
     /** @type {Lane[]} */
     this.lanes = lanesOf(run, clock.course);
     this.curves = charts(run);
+    /** No chart is lower than its legend. */
+    this.lowestCurve = Math.max(LOWEST_CURVE, legendHeight(this.curves));
     new ResizeObserver(() => this.paint()).observe(host);
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
     this.canvas.addEventListener("pointermove", (e) => this.point(e));
@@ -63,17 +65,19 @@ export class Timeline {
   }
 
   height() {
-    return HEAD + this.lanes.length * LOWEST_LANE + this.curves.length * (LOWEST_CURVE + GAP) + 6;
+    return HEAD + this.lanes.length * LOWEST_LANE + this.curves.length * (this.lowestCurve + GAP) + 6;
   }
 
   /** Lanes and curves share the height that there is. */
   divide() {
     const free = Math.max(this.host.clientHeight - 4, this.height()) - HEAD - 6;
     const lanes = Math.max(this.lanes.length, 1);
-    const wanted = this.curves.length ? (0.5 * free) / lanes : free / lanes;
+    // What curves need at least is theirs: higher lanes would push the last chart out of the picture.
+    const most = free - this.curves.length * (this.lowestCurve + GAP);
+    const wanted = (this.curves.length ? Math.min(0.5 * free, most) : free) / lanes;
     this.lane = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
     const rest = free - this.lanes.length * this.lane;
-    this.curve = Math.min(Math.max(rest / Math.max(this.curves.length, 1) - GAP, LOWEST_CURVE), HIGHEST_CURVE);
+    this.curve = Math.min(Math.max(rest / Math.max(this.curves.length, 1) - GAP, this.lowestCurve), Math.max(HIGHEST_CURVE, this.lowestCurve));
   }
 
   /**

@@ -6,6 +6,9 @@ import { el } from "./dom.js";
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
+/** With so many digits the moment and the end are shown (s). */
+const SHOWN = 2;
+
 const KEYS = [
   ["Space", "play and pause"],
   ["← →", "one transition back or on"],
@@ -41,7 +44,7 @@ export class Transport {
     });
     this.time = el("input", {
       class: "time", inputmode: "decimal", "aria-label": "Moment in seconds", value: "0",
-      onchange: () => clock.seek(Number(this.time.value)),
+      onchange: () => clock.seek(this.written(Number(this.time.value))),
     });
     this.of = el("span", { class: "of" });
     this.step = el("span", { class: "of" });
@@ -68,14 +71,23 @@ export class Transport {
     this.update();
   }
 
+  /**
+   * The moment that somebody means: the end is shown rounded, and who writes it so means the end.
+   * @param {number} t
+   */
+  written(t) {
+    const { end } = this.clock;
+    return t === Number(end.toFixed(SHOWN)) ? end : t;
+  }
+
   update() {
     const { clock } = this;
     const isSeconds = clock.course.run.clock === "seconds";
     this.play.textContent = clock.isPlaying ? "❚❚" : "▶";
     this.play.setAttribute("aria-label", clock.isPlaying ? "Pause (space)" : "Play (space)");
     this.slider.value = String((clock.t / clock.end) * 1000);
-    if (document.activeElement !== this.time) this.time.value = isSeconds ? clock.t.toFixed(2) : String(clock.k);
-    this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(2)} s` : ` / ${clock.course.steps.toLocaleString("en")}`;
+    if (document.activeElement !== this.time) this.time.value = isSeconds ? clock.t.toFixed(SHOWN) : String(clock.k);
+    this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(SHOWN)} s` : ` / ${clock.course.steps.toLocaleString("en")}`;
     const model = clock.course.clock && clock.k ? `time ${clock.course.clock[clock.k - 1]}` : "";
     this.step.textContent = isSeconds ? `step ${clock.k} / ${clock.course.steps}` : model;
     this.speed.value = String(Math.log10(clock.speed));
