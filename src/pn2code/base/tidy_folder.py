@@ -32,8 +32,8 @@ MOST_OTHER_BYTES = 20_000_000
 """Of files that are in none of these."""
 TAG = "CACHEDIR.TAG"
 """The mark of a folder that is pn2code's own (https://bford.info/cachedir)."""
-_SIGNATURE = (
-    "Signature: 8a477f597d28d172789f06886806bc55\n"
+_MARK = (
+    "Signature: 8a477f597d28d172789f06886806bc55\n"  # that of all caches
     "# The cache of pn2code. What is here is made again when it is missing.\n"
 )
 _OWN = {
@@ -59,7 +59,7 @@ class _File(NamedTuple):
 
 
 def tidy_when_due(folder: Path) -> None:
-    """Has the folder tidied when this process ends, if that was not done for a day. It costs one look at a file."""
+    """Has the folder tidied when this process ends, if that was not done for a day. It costs a look at two files."""
     name = str(folder)
     if name in _looked_at:
         return
@@ -106,12 +106,12 @@ def _is_marked(folder: Path) -> bool:
     tag = folder / TAG
     try:
         if tag.is_file():
-            return tag.read_text(encoding="utf-8", errors="replace").startswith(_SIGNATURE[:43])
+            return tag.read_text(encoding="utf-8", errors="replace").startswith(_MARK)
         for entry in os.scandir(folder):
             is_room = entry.is_dir(follow_symlinks=False) and entry.name in MOST_BYTES
             if not is_room and entry.name != STAMP and not re.fullmatch(_OWN[""], entry.name):
                 return False
-        tag.write_text(_SIGNATURE, encoding="utf-8")
+        tag.write_text(_MARK, encoding="utf-8")
     except OSError:
         return False
     return True

@@ -136,7 +136,10 @@ def test_a_command_does_it_once_a_day(tmp_path: Path, days: float) -> None:
     assert left(cache) >= {TAG, STAMP, "notes.txt"} and not stale.exists()
 
 
-@pytest.mark.parametrize("way", ["other things in it", "a link to other things", "another mark"])
+@pytest.mark.parametrize(
+    "way",
+    ["other things in it", "a link to other things", "another mark", "another program's cache"],
+)
 def test_a_folder_of_other_things_is_left_alone(tmp_path: Path, way: str) -> None:
     base, folder = tmp_path / "home", tmp_path / "home/pn2code"
     folder.mkdir(mode=0o700, parents=True)
@@ -145,6 +148,10 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path, way: str) -> Non
         put(folder / "src/a.py", 400)
     elif way == "another mark":
         (folder / TAG).write_text("something else")
+    elif way == "another program's cache":
+        (folder / TAG).write_text(
+            "Signature: 8a477f597d28d172789f06886806bc55\n# Made by another one.\n"
+        )
     else:
         base = tmp_path / "elsewhere"
         base.mkdir()
