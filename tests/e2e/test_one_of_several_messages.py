@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.cell_texts import head
 from helpers.netbuilder import cpn
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
@@ -97,15 +98,7 @@ HEAD = """net cell
       out W0 : ()
       out end : ()
 """
-CELL = """[net]
-file = "cell.cpn"
-[supervisor]
-instance = "Supervisor"
-final = ["Finished"]
-order = "documented"
-[devices.Device]
-instance = "Device"
-"""
+CELL = head(order="documented") + '[devices.Device]\ninstance = "Device"\n'
 CHANNELS = ("first", "go", "again", "last", "on", "up", "end")
 FIRST = "      out first : ()"
 

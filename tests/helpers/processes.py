@@ -82,9 +82,8 @@ class Child:
         """The exit code; kills the process when it runs for too long."""
         if (code := self.poll()) is not None:
             return code
-        descriptor = os.pidfd_open(
-            self.pid
-        )  # the kernel says when: looking now and then costs as much as a test
+        # The kernel says when: looking now and then costs as much as a test.
+        descriptor = os.pidfd_open(self.pid)
         try:
             end = select.poll()
             end.register(descriptor, select.POLLIN)

@@ -84,7 +84,7 @@ def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard
             continue  # a group for two robots keeps nobody out
         tried.add(groups)
         found = _guard(graph, groups)
-        if found is not None and all(0 not in held.states[g] for g in groups):
+        if found is not None:
             yield found
 
 
@@ -93,7 +93,7 @@ def _order(group: Group) -> tuple[int, int, str]:
 
 
 def _covers(held: Held, side: Collection[int]) -> Iterator[tuple[int, tuple[Group, ...]]]:
-    """Sets of groups of which one is held in each state of a side, with in how many states."""
+    """Sets of groups of which one is held in each state of a side, and none at the start, with in how many states."""
     states, wanted = held.states, set(side)
     single = sorted((g for g in states if held.most[g] == 1 and 0 not in states[g]), key=_order)
     whole: list[tuple[int, tuple[Group, ...]]] = []

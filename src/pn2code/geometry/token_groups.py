@@ -124,13 +124,14 @@ def held_groups(graph: CellGraph) -> Held:
         p for p in range(len(partition.net.places))
         if partition.place_owner[p] == 0 and p not in partition.final_places
     ]  # fmt: skip
-    states: dict[Group, set[int]] = {Group(p): set() for p in own}
+    whole = {p: Group(p) for p in own}
+    states: dict[Group, set[int]] = {group: set() for group in whole.values()}
     most: Counter[Group] = Counter()
     for i, marking in enumerate(graph.marked):
-        for p in own:
-            if marking.get(p):
-                states[Group(p)].add(i)
-                most[Group(p)] = max(most[Group(p)], marking[p])
+        for p, tokens in marking.items():
+            if tokens and p in whole:
+                states[whole[p]].add(i)
+                most[whole[p]] = max(most[whole[p]], tokens)
     for marked, among in _coloured(graph, own).items():
         found: Counter[Group] = Counter()
         for (p, value), tokens in marked:

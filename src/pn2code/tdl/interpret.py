@@ -297,12 +297,11 @@ class Interpreter:
         return None
 
     def _wait_until(self, condition: t.Expression) -> AwaitFile | None:
-        if evaluate(condition, self):
-            return None
+        # First the files, then the condition: what comes between the two (in real time) is seen by the condition, and
+        # what comes after it fills one of these files.
         empty = tuple(
             self._channel[name] for name in paths.files_in(condition) if not self.filled(name)
         )
-        # What came since the condition was asked is not among these files, so it would wake nobody (real time).
         if evaluate(condition, self):
             return None
         if not empty:

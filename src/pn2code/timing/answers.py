@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Literal
 
 from pn2code.base.frozen import frozen
@@ -89,6 +90,13 @@ class Ending:
         }
 
 
+def _unless(others: Sequence[str]) -> tuple[Within, str]:
+    """The answer where each run that comes to its end does so in time; `others`: what else runs may do."""
+    if others:
+        return "unknown", f"each run that comes to its end does, but {'; '.join(others)}"
+    return "yes", ""
+
+
 @frozen
 class Cycle:
     """How long a cycle takes.
@@ -154,9 +162,7 @@ class Cycle:
             return "no", f"a run takes {seconds_up(surely)} s"
         if self.most + TIE > limit:
             return "unknown", f"the longest cycle is as long as that, to {near(self.most - surely)}"
-        if self.others:
-            return "unknown", f"each run that comes to its end does, but {'; '.join(self.others)}"
-        return "yes", ""
+        return _unless(self.others)
 
     def _bounded_within(self, limit: int) -> tuple[Within, str]:
         """The same where only the bounds are known."""
@@ -165,9 +171,7 @@ class Cycle:
             return "no", f"no cycle takes less than {seconds_down(self.at_least)} s"
         if self.at_most + TIE > limit:
             return "unknown", f"{self.why}; no cycle takes more than {seconds_up(self.at_most)} s"
-        if self.bounded:
-            return "unknown", f"each run that comes to its end does, but {'; '.join(self.bounded)}"
-        return "yes", ""
+        return _unless(self.bounded)
 
     def row(self) -> dict[str, Any]:
         """For programs."""

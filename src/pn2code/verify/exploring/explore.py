@@ -482,9 +482,8 @@ def _run(
         patience = Patience(limits.processor_seconds, lambda: processor_time(process.pid))
     try:
         while True:
-            reader.join(
-                _LOOK_S
-            )  # its last word wakes us at once; `wait` with a limit would sleep and look
+            # Its last word wakes us at once; `wait` with a limit would sleep and look.
+            reader.join(_LOOK_S)
             if not reader.is_alive():
                 with suppress(subprocess.TimeoutExpired):
                     process.wait(_LOOK_S)
