@@ -86,7 +86,8 @@ class Ahead(Generic[T]):
             if not self._helpers:
                 return self._tasks[task]()
             self._give(task)
-            self._hear()
+            if self._helpers:  # none may be left to whom it could be given
+                self._hear()
         return self._done.pop(task)
 
     def close(self) -> None:
@@ -111,12 +112,15 @@ class Ahead(Generic[T]):
                 process = context.Process(
                     target=_work, args=(self._tasks, own, list(others)), daemon=True
                 )
+                # An interrupt before its first line would end it: it waits until the copy hears none.
+                before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
                 try:
                     process.start()
                 except OSError:  # the system has no room for more
                     told.close()
                     break
                 finally:
+                    signal.pthread_sigmask(signal.SIG_SETMASK, before)
                     own.close()
                 self._helpers.append(_Helper(process, told, []))
 
@@ -175,6 +179,7 @@ def _work(
 ) -> None:
     """What a process does until nobody is at the other end."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     for other in others:
         other.close()

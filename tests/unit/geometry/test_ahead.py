@@ -72,6 +72,18 @@ def test_those_that_are_killed_are_missed_by_nobody() -> None:
         assert ahead.processes == []
 
 
+def test_where_the_last_is_lost_while_it_is_told_the_task_is_done_here() -> None:
+    with Ahead(tasks(), 2) as ahead:
+        ahead.take(0)
+        for h in ahead._helpers:
+            h.process.kill()
+            h.process.join()
+            h.tasks.clear()  # so that it is told something again
+        ahead._given.clear()
+        assert ahead.take(COUNT - 1) == squared(COUNT - 1)
+        assert ahead.processes == []
+
+
 def test_an_exception_is_raised_where_the_task_is_taken() -> None:
     def work(n: int) -> int:
         if n == 20:
