@@ -65,7 +65,13 @@ def raised(guard: str, arcs: str) -> list[str]:
         ("hd l > 0", "A : n|B : n|P : l", ["hd l > 0"]),  # the first two have nothing in common
         ("hd r > 0", "R : (n, l)|S : (n, r)", ["hd r > 0"]),
         ("", "A : n|B : n|P : l|B : hd l", ["hd l"]),
-        ("hd l > 0", "P : l|A : 2", ["hd l > 0"]),
+        ("length l > 0, hd l > 0", "P : l|A : 2", []),  # what needs no variable is asked first
+        ("length l > 0, hd l > 0", "P : l|A : 1", ["hd l > 0"]),
+        (
+            "length l > 0, hd l > 0",
+            "P : l|B : n|B : 1",
+            ["hd l > 0"],
+        ),  # with another one: it is not
         ("m > 5, k = m + 1, hd l > k", "P : l|A : m", ["hd l > k"]),
         ("length l > 0, hd l > 0", "P : l|E : n", []),  # it is empty: nothing is asked
         ("length l > 0, hd l > 0", "P : l|E : 0`3", ["hd l > 0"]),
