@@ -54,7 +54,7 @@ class Verification:
 
     Args:
         verdict: the worst of all answers: "no", "inconclusive" or "yes". Where nothing is asked it is "yes" if all
-            markings were seen.
+            markings were seen, and no order of conditions raises an exception.
         is_complete: whether all reachable markings were seen.
         nodes, arcs: of the state space; of an incomplete one those that were seen.
         dead: how many dead markings were seen.

@@ -27,6 +27,7 @@ from pn2code.verify.answers import basis, outcome, why_disabled
 from pn2code.verify.answers.outcome import error_text, good_of
 from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
+from pn2code.verify.answers.reasons import raises
 from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
@@ -104,6 +105,10 @@ def full(said: Said) -> str:
             goal = f"marking {found.error_trace.node}, in which an exception is raised"
             path = _told(said, found.error_trace, goal)
             parts.append(f"{path}\n  then {error_text(net, found)}")
+        orders = found.orders.raised if found.orders is not None else None
+        if orders is not None and orders.trace is not None:
+            path = _told(said, orders.trace, f"marking {orders.node}, where CPN Tools may stop")
+            parts.append(f"{path}\n  then `{orders.text}` {raises(orders.message)}")
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
     timed = "\n".join(_durations(said)).strip("\n")
@@ -116,7 +121,7 @@ def _told(said: Said, trace: Trace, goal: str) -> str:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:
         return f"{head}\n  (it cannot be shown: {problem})"
-    end = [] if trace is said.found.error_trace else _end(said, trace.file, False)
+    end = [] if trace not in said.found.traces else _end(said, trace.file, False)
     return "\n".join([head, *([text(shown, trace.steps)] if trace.steps else ()), *end])
 
 
@@ -485,6 +490,10 @@ def _path_lines(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     if found.error_trace is not None:
         lines = _last(said, found.error_trace.file, "to the exception", most - 1)
         return [*lines, f"  then {error_text(said.net, found)}"]
+    orders = found.orders.raised if found.orders is not None else None
+    if orders is not None and orders.trace is not None and all(i.kind != "bad" for i in wrong):
+        lines = _last(said, orders.trace.file, "to where CPN Tools may stop", most - 1)
+        return [*lines, f"  then `{orders.text}` {raises(orders.message)}"]
     for item in wrong:
         if item.file is not None:
             what = f"for `{item.name}`"

@@ -63,13 +63,28 @@ class Unsure:
 
 
 @frozen
-class _Condition:
+class Condition:
+    """What decides whether a binding is possible: a step of the plan, a guard, or what an arc wants.
+
+    Args:
+        at: its place in the order here.
+        text: what is computed.
+        may_raise: whether it may raise an exception.
+        may_fail: whether it may be false, or match nothing where there is a token.
+        binds: variables that get their values.
+        needs: those that must have theirs before.
+        term: of a token that an arc takes: the arc and the term.
+        guard: of a guard: which.
+    """
+
     at: _Place
     text: Exp
     may_raise: bool
     may_fail: bool
     binds: frozenset[Symbol]
     needs: frozenset[Symbol]
+    term: tuple[int, int] | None = None
+    guard: int | None = None
 
 
 def unsure(net: FlatNet) -> tuple[Unsure, ...]:
@@ -144,12 +159,12 @@ def _line(e: Exp) -> str:
 
 
 def _unsure(t: FlatTransition, raising: Raising, uses: NetVariables) -> Unsure | None:
-    found = sorted(_conditions(t, raising, uses), key=lambda x: x.at)
+    found = conditions(t, raising, uses)
     for i, condition in enumerate(found):
         if not condition.may_raise:
             continue
         needs = condition.needs
-        hiding: _Condition | None = None
+        hiding: Condition | None = None
         for other in reversed(found[:i]):
             if needs & other.binds:
                 needs |= other.needs
@@ -161,7 +176,7 @@ def _unsure(t: FlatTransition, raising: Raising, uses: NetVariables) -> Unsure |
 
 
 def _doubtful(t: FlatTransition, raising: Raising, uses: NetVariables) -> Unsure | None:
-    found = sorted(_conditions(t, raising, uses), key=lambda x: x.at)
+    found = conditions(t, raising, uses)
     for i, condition in enumerate(found):
         if not condition.may_raise:
             continue
@@ -174,7 +189,12 @@ def _doubtful(t: FlatTransition, raising: Raising, uses: NetVariables) -> Unsure
     return None
 
 
-def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iterator[_Condition]:
+def conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> list[Condition]:
+    """All of a transition, in the order in which they are asked here."""
+    return sorted(_conditions(t, raising, uses), key=lambda x: x.at)
+
+
+def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iterator[Condition]:
     own = frozenset(t.variables)
     bound: list[frozenset[Symbol]] = [frozenset()]
     steps: set[tuple[int, int]] = set()
@@ -194,7 +214,7 @@ def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iter
                 steps.add((arc, index))
                 may = any(map(raising.raise_in, _texts(term)))
                 fails = not isinstance(term.pattern, PVar) or not new or term.delay is not None
-                yield _Condition((i, _STEP, 0), term.value, may, fails, new, needs)
+                yield Condition((i, _STEP, 0), term.value, may, fails, new, needs, (arc, index))
             case BindEquation(guard, pattern, value):
                 equations.add(guard)
                 names = frozenset(pattern_variables(pattern))
@@ -203,7 +223,7 @@ def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iter
                     not isinstance(pattern, PVar) or not new or not _is_whole(pattern.symbol.colset)
                 )
                 may = raising.raise_in(value)
-                yield _Condition((i, _STEP, 0), t.guards[guard], may, fails, new, needs)
+                yield Condition((i, _STEP, 0), t.guards[guard], may, fails, new, needs, None, guard)
             case BindAll(symbol) | BindRandom(symbol):
                 new = frozenset({symbol})
         bound.append(before | new)
@@ -216,7 +236,7 @@ def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iter
         if i not in equations and not isinstance(text, Con | Lit):
             needs = needed(text)
             place = (at(needs), _GUARD, i)
-            yield _Condition(place, text, raising.raise_in(text), True, nothing, needs)
+            yield Condition(place, text, raising.raise_in(text), True, nothing, needs, None, i)
     for i, taken in enumerate(t.arcs):
         if taken.kind not in _TAKING or taken.inscription is None:
             continue
@@ -226,7 +246,7 @@ def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iter
             needs, texts = needed(*_texts(term)), _texts(term)
             when = at(needs) if all(map(is_total, texts)) else len(bound) - 1
             may = any(map(raising.raise_in, texts))
-            yield _Condition((when, _ARC, i), term.value, may, bool(needs), nothing, needs)
+            yield Condition((when, _ARC, i), term.value, may, bool(needs), nothing, needs, (i, j))
 
 
 def _term(t: FlatTransition, arc: int, index: int) -> Term:

@@ -26,6 +26,15 @@ STATE_ERROR = register(
     "(Overflow, Div, a value outside its colour set, ...), as in a simulation that reaches this marking. CPN Tools "
     "stops its calculation, too. What was seen until then is reported as partial.",
 )
+OTHER_ORDER = register(
+    "other-order",
+    "CPN Tools may stop in a reachable marking, where it asks conditions in another order",
+    "`verify` has looked at the reachable markings a second time, and computed whatever may raise an exception as soon "
+    "as its variables have values, before other conditions are asked. In one of them something raises an exception "
+    "that does not here, since another condition ends the question before. Which order CPN Tools takes cannot be told "
+    "from the net (`guard-order`), so it is not known whether it stops there, and no answer is a yes. The run leads to "
+    "that marking.",
+)
 BEYOND_ROOM = register(
     "place-unbounded",
     "a place gets more tokens than can be explored",

@@ -59,8 +59,10 @@ class Counts:
 
 def verdict(found: Exploration, counts: Counts) -> Word:
     """The worst of all: where no property is asked, whether all markings were seen counts as well."""
-    if counts.bad or counts.errors or _has_raised(found):
+    if counts.bad or counts.errors or (has_raised(found) and is_everywhere(found)):
         return "no"
+    if has_raised(found) or may_stop(found):
+        return "inconclusive"
     return "yes" if not counts.open and _is_enough(found, counts) else "inconclusive"
 
 
@@ -91,37 +93,70 @@ def _counted(found: Exploration, known: Known) -> str:
 
 def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
     """The last line: it says what `verdict` says."""
-    if _has_raised(found):
+    if has_raised(found) and is_everywhere(found):
         return f"Verdict: NO. {error_text(net, found)} in a reachable marking."
     if counts.bad:
         are = "are not as they" if counts.bad != 1 else "is not as it"
         return f"Verdict: NO. {counts.bad} of {counts.all} answers {are} should be."
     if counts.errors:
         return "Verdict: NO. There are errors, see below."
+    if has_raised(found):
+        return (
+            f"Verdict: NOT KNOWN. {error_text(net, found)} in a reachable marking; CPN Tools may ask another condition "
+            "first, or find too few tokens, and raise nothing."
+        )
+    if may_stop(found):
+        return f"Verdict: NOT KNOWN. {order_text(net, found)}"
     if counts.open:
         are = "are" if counts.open != 1 else "is"
         return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
     if counts.all and _is_enough(found, counts):
-        return f"Verdict: YES. {_all_good(counts.all)}.{_in_order(net)}"
+        return f"Verdict: YES. {_all_good(counts.all)}.{_in_order(net, found)}"
     if found.complete:
         one = nondeterminism.undetermined(net)
         what = (
             f"markings of one of many state spaces ({_MORE[one]})" if one else "reachable markings"
         )
         nothing = "and there are no properties to check"
-        return f"Verdict: COMPLETE. All {what} were seen, {nothing}.{_in_order(net)}"
+        return f"Verdict: COMPLETE. All {what} were seen, {nothing}.{_in_order(net, found)}"
     why = _why(found, counts)
     known = f"{_all_good(counts.all)}, but " if counts.all else ""
     return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."
 
 
-def _in_order(net: FlatNet) -> str:
-    """That CPN Tools may stop with an exception where the answers say nothing of one, after a blank; or ""."""
-    found = guard_order.unsure(net)
-    if not found:
+def may_stop(found: Exploration) -> bool:
+    """Whether CPN Tools may stop with an exception, or it is not known that it does not."""
+    return found.orders is not None and bool(found.orders.why)
+
+
+def order_text(net: FlatNet, found: Exploration) -> str:
+    """That CPN Tools may stop, in sentences."""
+    assert found.orders is not None
+    raised = found.orders.raised
+    here = "in the order in which they are asked here nothing raises an exception"
+    if raised is None:
+        return (
+            "CPN Tools may ask conditions in another order, and whether one raises an exception then is not known: "
+            f"{clause(found.orders.why)}; {here}."
+        )
+    name = (
+        "the net" if raised.transition is None else f"`{net.transitions[raised.transition].name}`"
+    )
+    return (
+        f"CPN Tools may stop in a reachable marking: if it asks `{raised.text}` of {name} before other conditions, "
+        f"that {raises(raised.message)}; {here}."
+    )
+
+
+def _in_order(net: FlatNet, found: Exploration) -> str:
+    """Of a warning that conditions may be asked in another order, what became of it, after a blank; or ""."""
+    warned = guard_order.unsure(net)
+    if not warned:
         return ""
-    names = ", ".join(f"`{x.transition.name}`" for x in found[:MOST_NAMED])
-    more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+    if found.complete and found.orders is not None:
+        return " In every order in which CPN Tools may ask conditions none of them raises an exception."
+    names = ", ".join(f"`{x.transition.name}`" for x in warned[:MOST_NAMED])
+    more = f" and {len(warned) - MOST_NAMED} more" if len(warned) > MOST_NAMED else ""
     return (
         f" This holds for the order in which conditions are asked here; CPN Tools may ask those of {names}{more} in "
         "another, and stop with an exception (warning `guard-order`)."
@@ -169,8 +204,14 @@ def error_text(net: FlatNet, found: Exploration) -> str:
     return f"{what} {raises(error['message'])}"
 
 
-def _has_raised(found: Exploration) -> bool:
+def has_raised(found: Exploration) -> bool:
+    """Whether an exception has ended the exploration."""
     return found.error is not None and found.why == "error"
+
+
+def is_everywhere(found: Exploration) -> bool:
+    """Whether CPN Tools raises it, too, whatever it asks first."""
+    return found.error is None or bool(found.error.get("everywhere", True))
 
 
 def _why(found: Exploration, counts: Counts) -> str:

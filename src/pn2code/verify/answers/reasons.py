@@ -30,6 +30,8 @@ _CLAUSES = {
     "in lock-step stops",
     "poses": "it is not known whether the cell comes to a move that an arm cannot make",
     "chance": "it depends on random numbers or files, and other values than those drawn may lead to another answer",
+    "order": "CPN Tools may ask conditions in another order, and stop with an exception",
+    "ways": "there are too many orders in which conditions may be asked",
     "steps": "it depends on the number of steps (`step ()`), which is no part of a state",
     "compiler": "there is no C compiler",
 }

@@ -132,6 +132,38 @@ class Known:
 
 
 @frozen
+class RaisedThere:
+    """An exception that CPN Tools may raise in a reachable marking, where nothing is raised here.
+
+    Args:
+        transition: of which conditions are asked, by index.
+        text: what is computed; "": not known.
+        message: the exception.
+        node: the marking; `trace`: the run to it; None: they are not known.
+    """
+
+    transition: int | None
+    text: str
+    message: str
+    node: int | None
+    trace: Trace | None
+
+
+@frozen
+class OtherOrders:
+    """What is known of other orders of conditions (`net.other_orders`) in the markings that were seen.
+
+    Args:
+        why: "": nothing raises an exception in any order; "error": something does; else why that is not known:
+            one of those of `Exploration`, "ways" (there are too many), "truncated".
+        raised: of "error".
+    """
+
+    why: str
+    raised: RaisedThere | None = None
+
+
+@frozen
 class Exploration:
     """The state space, or the part of it that was seen.
 
@@ -141,7 +173,8 @@ class Exploration:
             `ExploreOptions.heaps`), "infinite" (see `covering`), "counted" (see `known`).
         seen: what is complete, also where not all is.
         error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
-            `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
+            `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None),
+            `everywhere` (whether CPN Tools raises it, too, whatever it asks first; not there: yes).
         nodes, arcs, depth: of the graph.
         seconds: of exploration, compilation and analysis not included.
         bytes_per_state: of the tables; `peak_mib`: of the process.
@@ -161,6 +194,7 @@ class Exploration:
         different: for each place, how many multi-sets it held; 0 where that is not counted, since its colours are few.
         covering: of "infinite": the run that shows that places, or the time alone, grow without bound.
         known: of "counted": what is known of all markings nevertheless.
+        orders: what CPN Tools may raise in another order; None: nothing, or it was not looked at.
     """
 
     complete: bool
@@ -190,6 +224,7 @@ class Exploration:
     different: tuple[int, ...] = ()
     covering: Covering | None = None
     known: Known | None = None
+    orders: OtherOrders | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -371,10 +406,28 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
         "error": dict(found.error) if found.error else None,
+        "other_orders": _orders_row(net, found.orders),
         "counted": _known_row(net, found.known),
         "unbounded": _covering_row(net, found.covering),
         "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
     }
+
+
+def _orders_row(net: FlatNet, orders: OtherOrders | None) -> dict[str, Any] | None:
+    """Whether nothing is raised in any order, and if not, what, or why that is not known."""
+    if orders is None:
+        return None
+    raised, row = orders.raised, None
+    if raised is not None:
+        t, trace = raised.transition, raised.trace
+        row = {
+            "transition": None if t is None else net.transitions[t].name,
+            "raises": raised.text,
+            "message": raised.message,
+            "node": raised.node,
+            "trace": None if trace is None else {**asdict(trace), "file": str(trace.file)},
+        }
+    return {"harmless": not orders.why, "why": orders.why, "raised": row}
 
 
 def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:

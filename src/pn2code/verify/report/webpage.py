@@ -15,7 +15,15 @@ from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.assumptions import assumed
-from pn2code.verify.answers.outcome import Counts, error_text, good_of, header
+from pn2code.verify.answers.outcome import (
+    Counts,
+    error_text,
+    good_of,
+    header,
+    is_everywhere,
+    may_stop,
+    order_text,
+)
 from pn2code.verify.answers.path import Step, steps
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
@@ -199,7 +207,9 @@ def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str
         said.append({"kind": "open", "text": text})
     if found.error is not None:
         text = f"In a marking that can be reached {error_text(net, found).replace('`', '')}."
-        said.append({"kind": "bad", "text": text})
+        said.append({"kind": "bad" if is_everywhere(found) else "open", "text": text})
+    if may_stop(found):
+        said.append({"kind": "open", "text": order_text(net, found).replace("`", "")})
     if found.dead_count:
         number = f"{found.dead_count:,} dead marking{'s' * (found.dead_count > 1)}"
         said.append({"kind": "open", "text": f"{number}: nothing is enabled there."})

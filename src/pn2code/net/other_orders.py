@@ -1,0 +1,370 @@
+"""A net whose conditions are asked in every order that CPN Tools might take: with transitions that only ask.
+
+asked = asking(net)
+asked.net                       # the net, with more transitions behind its own; they never occur
+asked.questions[i - asked.own]  # what the transition i of it asks, and of which transition
+
+In which order the engine asks the conditions of a transition cannot be told (`guard_order`). An exception is raised in
+some order at most where it is raised as soon as the variables that its expression needs have values, whatever the
+other conditions are. So for each expression that may raise one, and for each least set of arcs and guard equations that
+gives its variables values (of a variable on two arcs either may come first), there is a transition that takes tokens as
+these arcs do, computes the expression, and is then impossible. It has the priority of its own transition, is
+inhibited as that one, and computes nothing where a place is empty from which that one takes something: CPN Tools looks
+at the numbers of tokens first. So it does, where the expression needs a token, at places of which all that is wanted
+is known without variables (two arcs from a place, of which one has a variable, do not count), and it binds available
+tokens only, and as many of one colour as a constant coefficient demands. All this was found by experiment.
+
+The markings are those of the net. If nothing raises an exception in any of them, nothing does in any order. If
+something does, CPN Tools may stop there; it need not.
+
+What would only ask what the transition itself asks, in the order here, is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from pn2code.base.frozen import frozen
+from pn2code.diagnostics import Diagnostics, Span
+from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PVar, PWild, Symbol, Var
+from pn2code.ml.core.terms import Sequence as Several
+from pn2code.ml.core.types import BOOL, INT
+from pn2code.ml.library.datatypes import TRUE
+from pn2code.net.flat import (
+    ArcInscription,
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindStep,
+    BindTerm,
+    FlatArc,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
+from pn2code.net.guard_order import Condition, conditions
+from pn2code.net.raising import Raising
+from pn2code.net.terms import TermReader, binary
+from pn2code.net.total import is_total
+from pn2code.net.uses import NetVariables, pattern_variables
+
+MOST_WAYS = 64
+"""Sets of arcs and equations that are looked at for one expression."""
+_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+_Names = frozenset[Symbol]
+
+
+@frozen
+class Question:
+    """What a transition asks that only asks: an expression of another one, by its index."""
+
+    transition: int
+    raises: Exp
+
+
+@frozen
+class Asking:
+    """A net and transitions that only ask.
+
+    Args:
+        net: both.
+        own: how many transitions are those of the net.
+        questions: what the others ask, in their order.
+        left: transitions of which not all is asked, since there are too many ways to do so.
+    """
+
+    net: FlatNet
+    own: int
+    questions: tuple[Question, ...]
+    left: tuple[int, ...]
+
+    def question(self, transition: int) -> Question | None:
+        """What a transition of `net` asks; None: it is one of the net's own."""
+        return self.questions[transition - self.own] if transition >= self.own else None
+
+
+@frozen
+class _Source:
+    """What gives variables their values: a term of an arc, a guard equation in one direction, or all values of one."""
+
+    step: BindStep
+    binds: _Names
+    needs: _Names
+
+    @property
+    def term(self) -> tuple[int, int] | None:
+        return (self.step.arc, self.step.term) if isinstance(self.step, BindTerm) else None
+
+    @property
+    def guard(self) -> int | None:
+        return self.step.guard if isinstance(self.step, BindEquation) else None
+
+
+_Way = tuple[_Source, ...]
+"""Sources in an order in which each has what it needs."""
+
+
+def asking(net: FlatNet) -> Asking | None:
+    """The net with what else could be asked; None: no other order asks more. PNML nets have one order only."""
+    if net.file.lower().endswith(".pnml"):
+        return None
+    uses = NetVariables(net.program.variables)
+    maker = _Maker(net, Raising(net.program), uses)
+    own = len(net.transitions)
+    more: list[FlatTransition] = []
+    questions: list[Question] = []
+    left: list[int] = []
+    for t in net.transitions:
+        for found, raises in maker.of(t):
+            if found is None:
+                left.append(t.index)
+                continue
+            index = own + len(more)
+            name = f"{t.name} (asked {len(more) + 1})"
+            more.append(replace(found, index=index, name=name, short=name))
+            questions.append(Question(t.index, raises))
+    if not more and not left:
+        return None
+    whole = replace(net, transitions=(*net.transitions, *more))
+    return Asking(whole, own, tuple(questions), tuple(dict.fromkeys(left)))
+
+
+class _Maker:
+    def __init__(self, net: FlatNet, raising: Raising, uses: NetVariables) -> None:
+        self._net = net
+        self._raising = raising
+        self._uses = uses
+        self._reader = TermReader(net.program, uses, Diagnostics())
+
+    def of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Exp]]:
+        """A transition for each expression and way; None where there are too many ways."""
+        asked = conditions(t, self._raising, self._uses)
+        if len(asked) < 2 or not any(c.may_raise for c in asked):
+            return
+        sources = list(self._sources(t))
+        for i, c in enumerate(asked):
+            for e in self._parts(t, c) if c.may_raise else ():
+                ways = _ways(self._needed(t, e), sources)
+                if ways is None:
+                    yield None, e
+                    continue
+                for way in ways:
+                    if not self._is_asked(t, asked[:i], way):
+                        yield self._transition(t, way, e), e
+
+    def _needed(self, t: FlatTransition, *texts: Exp | None) -> _Names:
+        return frozenset(self._uses.of(*texts)) & frozenset(t.variables)
+
+    def _parts(self, t: FlatTransition, c: Condition) -> list[Exp]:
+        """What is computed for a condition and may raise an exception; of an equation that may bind a side alone."""
+        if c.guard is not None:
+            guard = t.guards[c.guard]
+            sides = binary(guard, ("=",)) or ()
+            may_bind = any(pattern_variables(self._reader.pattern(side)) for side in sides)
+            texts = [*sides] if may_bind else [guard]
+        else:
+            assert c.term is not None
+            term = _term(t, *c.term)
+            texts = _texts(term)
+        return [e for e in texts if self._raising.raise_in(e)]
+
+    def _sources(self, t: FlatTransition) -> Iterator[_Source]:
+        found: set[Symbol] = set()
+        for i, arc in enumerate(t.arcs):
+            if arc.kind not in _TAKING or arc.inscription is None:
+                continue
+            for j, term in enumerate(arc.inscription.terms):
+                names = frozenset(pattern_variables(term.pattern))
+                if names:
+                    found |= names
+                    yield _Source(BindTerm(i, j), names, self._needed(t, term.delay) - names)
+        for i, guard in enumerate(t.guards):
+            sides = binary(guard, ("=",))
+            for side, value in (sides, sides[::-1]) if sides is not None else ():
+                pattern = self._reader.pattern(side)
+                names = frozenset(pattern_variables(pattern))
+                if pattern is not None and names:
+                    found |= names
+                    yield _Source(BindEquation(i, pattern, value), names, self._needed(t, value))
+        for step in t.plan:
+            if isinstance(step, BindAll):
+                yield _Source(step, frozenset({step.symbol}), frozenset())
+
+    def _is_asked(self, t: FlatTransition, before: Sequence[Condition], way: _Way) -> bool:
+        """Whether the transition itself asks this, wherever the way leads: nothing before it can keep it from that."""
+        terms = {s.term for s in way if s.term is not None}
+        guards = {s.guard for s in way if s.guard is not None}
+        names = frozenset[Symbol]().union(*(s.binds | s.needs for s in way))
+        met: list[tuple[int, int] | int | None] = []
+        for c in before:
+            if c.term in terms or (c.guard is not None and c.guard in guards):
+                met.append(c.term if c.term is not None else c.guard)
+            elif c.term is None or c.binds & names or not self._always_matches(t, c):
+                return False
+        return terms.union(guards) <= set(met)
+
+    def _always_matches(self, t: FlatTransition, c: Condition) -> bool:
+        """Whether a token of a place always does: then it matters only that there is one."""
+        assert c.term is not None
+        term, place = _term(t, *c.term), self._net.places[t.arcs[c.term[0]].place]
+        pattern = term.pattern
+        return (
+            not c.may_fail
+            and not c.may_raise
+            and isinstance(pattern, PVar)
+            and pattern.symbol.colset == place.colset
+            and not place.colset.timed
+            and _constant(term) == 1
+        )
+
+    def _transition(self, t: FlatTransition, way: _Way, e: Exp) -> FlatTransition:
+        arcs = [a for a in t.arcs if a.kind is ArcKind.INHIBITOR]
+        places = {t.arcs[s.term[0]].place for s in way if s.term is not None}
+        if places:
+            constant = self._constant(t) - places
+            arcs += [_input(a) for a in t.arcs if a.kind in _TAKING and a.place in constant]
+            places |= constant
+        plan: list[BindStep] = []
+        tokens: list[Symbol] = []
+        for place in self._filled(t):
+            if place not in places:
+                tokens.append(_token(self._net, place))
+                plan.append(BindTerm(len(arcs), 0))
+                arcs.append(self._any_token(t, place))
+        for s in way:
+            if s.term is None:
+                plan.append(s.step)
+            else:
+                plan.append(BindTerm(len(arcs), 0))
+                arcs.append(_taking(t, *s.term))
+        true = Con(TRUE, BOOL, e.span)
+        # The equations of the way keep their numbers; then the expression is computed, and matches nothing.
+        last = len(t.guards)
+        plan.append(BindEquation(last, PWild(e.type, e.span), e))
+        plan.append(BindEquation(last + 1, PLit(1, INT, e.span), Lit(0, INT, e.span)))
+        bound = frozenset[Symbol]().union(*(s.binds for s in way))
+        return replace(
+            t,
+            variables=(*(s for s in t.variables if s in bound), *tokens),
+            guards=(true,) * (last + 2),
+            plan=tuple(plan),
+            arcs=tuple(arcs),
+            delay=None,
+            code=None,
+        )
+
+    def _constant(self, t: FlatTransition) -> frozenset[int]:
+        """The places of which all that is wanted is known without variables, and does not raise an exception."""
+        own, others = set[int](), set[int]()
+        for arc in t.arcs:
+            if arc.kind in _TAKING and arc.inscription is not None:
+                texts = [e for x in arc.inscription.terms for e in _texts(x)]
+                is_known = all(map(is_total, texts)) and not self._needed(t, *texts)
+                (own if is_known else others).add(arc.place)
+        return frozenset(own - others)
+
+    def _filled(self, t: FlatTransition) -> list[int]:
+        """The places that have to hold something, whatever the variables are; stamps do not matter."""
+        return list(
+            dict.fromkeys(
+                a.place
+                for a in t.arcs
+                if a.kind in _TAKING
+                and a.inscription is not None
+                and not self._net.places[a.place].colset.timed
+                and any(not x.whole and _constant(x) >= 1 for x in a.inscription.terms)
+            )
+        )
+
+    def _any_token(self, t: FlatTransition, place: int) -> FlatArc:
+        arc = next(a for a in t.arcs if a.place == place and a.kind in _TAKING)
+        assert arc.inscription is not None
+        token, span = _token(self._net, place), arc.inscription.value.span
+        value, pattern = Var(token, token.type, span), PVar(token, token.type, span)
+        return _with_term(arc, Term(_one(span), pattern, value, None, False, arc.origin))
+
+
+def _ways(needed: _Names, sources: Sequence[_Source]) -> list[_Way] | None:
+    """The least sets of sources that give variables values, each in an order; None: too many."""
+    found: dict[frozenset[int], _Way] = {}
+    stack: list[tuple[_Names, frozenset[int]]] = [(needed, frozenset())]
+    seen: set[frozenset[int]] = set()
+    while stack:
+        open_, chosen = stack.pop()
+        if not open_:
+            way = _ordered([sources[i] for i in sorted(chosen)])
+            if way is not None:
+                found[chosen] = way
+            continue
+        name = min(open_, key=lambda s: (s.name, s.uid))
+        for i, source in enumerate(sources):
+            with_it = chosen | {i}
+            if name not in source.binds or i in chosen or with_it in seen:
+                continue
+            seen.add(with_it)
+            if len(seen) > MOST_WAYS:
+                return None
+            bound = frozenset[Symbol]().union(*(sources[j].binds for j in with_it))
+            stack.append(((open_ | source.needs) - bound, with_it))
+    return [way for ids, way in found.items() if not any(other < ids for other in found)]
+
+
+def _ordered(sources: Sequence[_Source]) -> _Way | None:
+    """In an order in which each has what it needs; None: there is none."""
+    known: set[Symbol] = set()
+    left, way = list(sources), list[_Source]()
+    while left:
+        ready = next((s for s in left if s.needs <= known), None)
+        if ready is None:
+            return None
+        left.remove(ready)
+        way.append(ready)
+        known |= ready.binds
+    return tuple(way)
+
+
+def _token(net: FlatNet, place: int) -> Symbol:
+    """A variable for any token of a place; no other one has this number."""
+    colset = net.places[place].colset
+    return Symbol(-1 - place, f"token{place}", colset.type, colset=colset)
+
+
+def _taking(t: FlatTransition, arc: int, index: int) -> FlatArc:
+    """An arc that takes one term of another one; what several want together of a place is never asked."""
+    term = _term(t, arc, index)
+    value = Several((term.value,), term.value.type, term.value.span)
+    coefficient = term.coefficient if _constant(term) >= 0 else _one(term.value.span)
+    return _with_term(t.arcs[arc], replace(term, coefficient=coefficient, value=value))
+
+
+def _with_term(arc: FlatArc, term: Term) -> FlatArc:
+    assert arc.inscription is not None
+    inscription = ArcInscription(
+        arc.inscription.value, arc.inscription.form, (term,), arc.inscription.origin
+    )
+    return replace(arc, kind=ArcKind.INPUT, inscription=inscription)
+
+
+def _input(arc: FlatArc) -> FlatArc:
+    return replace(arc, kind=ArcKind.INPUT)
+
+
+def _texts(term: Term) -> list[Exp]:
+    return [term.coefficient, term.value, *([] if term.delay is None else [term.delay])]
+
+
+def _term(t: FlatTransition, arc: int, index: int) -> Term:
+    inscription = t.arcs[arc].inscription
+    assert inscription is not None
+    return inscription.terms[index]
+
+
+def _constant(term: Term) -> int:
+    """The coefficient; -1: it has to be computed."""
+    c = term.coefficient
+    return c.value if isinstance(c, Lit) and isinstance(c.value, int) else -1
+
+
+def _one(span: Span) -> Lit:
+    return Lit(1, INT, span)

@@ -1,0 +1,170 @@
+"""What CPN Tools may come to where it asks conditions in another order than here: a second look at a state space.
+
+found = look(opened, found, limits, options)
+found.orders               # what raises an exception in some order, where nothing does here
+found.error["everywhere"]  # whether what raises one here does so in every order
+
+A cell is not looked at again: what is said of it is said of its programs, which ask in the order here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+
+from pn2code.base.deadline import TimeIsOverError
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net.flat import FlatTransition
+from pn2code.net.guard_order import conditions
+from pn2code.net.other_orders import Asking, asking
+from pn2code.net.raising import Raising
+from pn2code.net.uses import NetVariables
+from pn2code.semantics.game.every_order import raises_in_every_order
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.trace.script import TraceRefusedError
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.answers.culprit import MOST_STEPS
+from pn2code.verify.answers.path import play
+from pn2code.verify.answers.reasons import raises
+from pn2code.verify.codes import OTHER_ORDER
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import FIRST_STATES
+from pn2code.verify.exploring.result import Exploration, OtherOrders, RaisedThere, Trace
+
+_PARTS = ("decided", "states")
+"""Ends of an exploration of which some markings are enough for an answer: those that were seen are seen again."""
+
+
+def look(
+    opened: OpenNet, found: Exploration, limits: Limits, options: ExploreOptions
+) -> Exploration:
+    """With what is known of other orders.
+
+    Args:
+        opened: the net.
+        found: its state space.
+        limits, options: of its exploration.
+
+    Raises:
+        GameError: as for `explore`.
+    """
+    if opened.config is not None:
+        return found
+    if found.error is not None and found.why == "error":
+        everywhere = _is_everywhere(opened, found)
+        return replace(found, error={**found.error, "everywhere": everywhere})
+    if not found.complete and not (options.questions and found.why in _PARTS):
+        return found
+    try:
+        with limits.deadline.enforced():
+            made = asking(opened.flat)
+    except TimeIsOverError:
+        return replace(found, orders=OtherOrders("seconds"))
+    return (
+        found
+        if made is None
+        else replace(found, orders=_asked(opened, made, found, limits, options))
+    )
+
+
+def _asked(
+    opened: OpenNet, made: Asking, found: Exploration, limits: Limits, options: ExploreOptions
+) -> OtherOrders:
+    options.stage("asking conditions in other orders ...")
+    most = limits.max_states if found.complete else max(found.nodes, 1)
+    own = replace(limits, max_states=most, graph=False, traces=0)
+    asked = ExploreOptions(
+        traces=options.traces,
+        stem=f"{options.stem}.asked",
+        initial=options.initial,
+        colours=0,
+        sizes=options.sizes,
+        quick=found.nodes <= FIRST_STATES,
+        pace=options.pace,
+        progress=options.progress,
+        interrupted=options.interrupted,
+    )
+    again = explore(made.net, opened.storage, own, Diagnostics(), asked)
+    if again is None:
+        return OtherOrders("truncated")
+    error = again.error
+    if error is not None and again.why == "error":
+        index = error.get("transition")
+        question = None if index is None else made.question(index)
+        t = index if question is None else question.transition
+        text = "" if question is None else " ".join(question.raises.span.text.split())
+        trace = again.error_trace
+        return OtherOrders(
+            "error", RaisedThere(t, text, error["message"], error.get("node"), trace)
+        )
+    if made.left:
+        return OtherOrders("ways")
+    is_all = again.seen.markings or (not found.complete and again.why == "states")
+    return OtherOrders("" if is_all else again.why)
+
+
+def _is_everywhere(opened: OpenNet, found: Exploration) -> bool:
+    """Whether the exception that ended the exploration is raised whatever is asked first."""
+    error = found.error
+    assert error is not None
+    index = error.get("transition")
+    if index is None or error.get("binding"):
+        return True
+    t = opened.flat.transitions[index]
+    if opened.flat.file.lower().endswith(".pnml"):
+        return True
+    shown = None if found.error_trace is None else _is_raised(opened, found.error_trace, t)
+    if shown is not None:
+        return shown
+    # The marking is not known. Where the search computes nothing of this kind, it was an occurrence that raised it.
+    asked = conditions(t, Raising(opened.flat.program), NetVariables(opened.flat.program.variables))
+    return not any(c.may_raise for c in asked) or len(asked) == len(t.arcs) == 1
+
+
+def _is_raised(opened: OpenNet, trace: Trace, t: FlatTransition) -> bool | None:
+    """Whether it is raised in every order after a run; None: the token game does not come there."""
+    try:
+        game, played = play(opened.flat, opened.storage, trace.file)
+        if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
+            return None
+        return _raises_next(game, t)
+    except (TraceRefusedError, GameError, OSError):
+        return None
+
+
+def _raises_next(game: Game, t: FlatTransition) -> bool:
+    """At the earliest time at which the search raises something."""
+    marking = game.marking
+    times = {marking.time}
+    if game.net.timed:
+        times |= game.enabling.thresholds(t, marking)
+    for time in sorted(times):
+        later = replace(marking, time=time)
+        try:
+            for _ in game.enabling.enabled(t, later):
+                pass
+        except GameError:
+            return raises_in_every_order(game.enabling, t, later)
+    return False
+
+
+def tell(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
+    """Warn of what CPN Tools may raise where nothing is raised here."""
+    orders = found.orders
+    if orders is None or orders.raised is None:
+        return
+    raised = orders.raised
+    t = None if raised.transition is None else opened.flat.transitions[raised.transition]
+    where = "the net" if t is None else f"transition `{t.short}`"
+    notes: list[str | Note] = []
+    if raised.trace is not None:
+        notes.append(f"{raised.trace.steps} steps lead to that marking: {raised.trace.file}")
+    d.warning(
+        OTHER_ORDER,
+        f"CPN Tools may stop in a reachable marking: of {where} it may compute `{raised.text}` first, "
+        f"which {raises(raised.message)}",
+        t.origin if t is not None else Origin(opened.flat.file),
+        notes=notes,
+        hint="put both conditions into one: `a andalso b`, or `m = (if a then b else c)`",
+    )
