@@ -27,21 +27,30 @@ MANY_MOVES = 120
 """Places in the C at which tokens are taken from arrays or counters, or put there. With `-O2` the functions that do it
 are copied to each of them, 5 ms of the compiler's time. 30 to 60 transitions that are not alike have so many; a net
 whose places are slots has next to none."""
+LONG_FUNCTION = 40_000
+"""Characters of one function of the generated C, with its indentation. gcc's time with `-O2` grows with the square of
+them: an inscription that joins 2,400 strings is 84,000 long, and took 13 s instead of 1 s."""
 QUICKER = ("-Og", "-DPN_MANY", "-fno-inline")
 """For large nets, after `-O2`: a fifth of the compiler's time, and simulators of the nets that were measured are up to
 a tenth slower (docs/benchmarks.md). No value that is computed depends on them."""
-QUICKER_GCC = ("-fno-forward-propagate", "-fira-algorithm=priority")
-"""A seventh less for gcc, for code that is as fast; other compilers do not know them."""
+QUICKER_GCC = ("-fno-forward-propagate", "-fira-algorithm=priority", "-fira-region=one")
+"""A seventh less for gcc, for code that is as fast; other compilers do not know them. The last is for loops in loops:
+registers are chosen in each by itself otherwise (600 arcs of a transition: 6 s and 1,400 MB, not 1.4 s and 94 MB)."""
 FALSE_ALARM = "-Wno-maybe-uninitialized"
 """With `-Og` gcc follows values less far, and may warn of some that are always set. clang does not know the warning."""
 
 
 _MOVES = re.compile(r"_(?:take|add|undo)\(")
+_BODY = re.compile(r"^\{\n.*?^\}$", re.MULTILINE | re.DOTALL)
 
 
 def is_large(generated: str) -> bool:
     """Whether compiling this C for speed would take longer than is gained."""
-    return len(generated) > LARGE or len(_MOVES.findall(generated)) > MANY_MOVES
+    return (
+        len(generated) > LARGE
+        or len(_MOVES.findall(generated)) > MANY_MOVES
+        or any(len(body[0]) > LONG_FUNCTION for body in _BODY.finditer(generated))
+    )
 
 
 def for_net(generated: str) -> tuple[str, ...]:

@@ -13,6 +13,8 @@ from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
 
 INDENT = "    "
+_DEEPEST = 24
+"""Levels that are indented: with all of them the C of a transition with n arcs has n * n blanks."""
 _MANY = 50
 """Elements of a list literal from which a loop puts them in: with as many temporary objects compilers take minutes."""
 _PLAIN = frozenset({Rep.INT, Rep.REAL, Rep.BOOL, Rep.CHAR})
@@ -38,22 +40,26 @@ class Statements:
         self.is_void = False
         self._loops = 0
 
+    @property
+    def _indent(self) -> str:
+        return INDENT * min(self._depth, _DEEPEST)
+
     def line(self, text: str) -> None:
         """One line at the present depth, broken if it is long."""
-        self.lines.extend(wrap(INDENT * self._depth + text))
+        self.lines.extend(wrap(self._indent + text))
 
     def note(self, text: str) -> None:
         """A comment line, shortened if it is very long."""
         clean = c_comment(text)
         if clean:
-            room = WIDTH - 4 * self._depth - 6
+            room = WIDTH - len(self._indent) - 6
             self.line(f"/* {clean if len(clean) <= room else clean[: room - 4] + ' ...'} */")
 
     def line_with_note(self, text: str, note: str) -> None:
         """One line with its comment behind it, or before it where that is too long."""
         clean = c_comment(note)
         whole = f"{text} /* {clean} */" if clean else text
-        if len(INDENT * self._depth + whole) <= WIDTH:
+        if len(self._indent + whole) <= WIDTH:
             self.line(whole)
         else:
             self.note(note)

@@ -329,7 +329,7 @@ def bounds_and_sums(
         start.initial,
         p_flows.vectors,
         coloured.found,
-        cycling=lambda: _cycling(p_flows, _t_flows(skel, _SHORT)),
+        cycling=lambda: _cycling(p_flows, _t_flows(skel, _short(len(skel.modes)))),
         programs=limits.programs,
         work=limits.program_work,
     )
@@ -400,7 +400,10 @@ def _p_flows(skel: Skeleton, limits: Limits) -> flows.Flows:
     return flows.semiflows(without_resets(skel), limits.flows)
 
 
-_SHORT = Limits(flows=flows.Limits(rows=1_000, work=20_000, programs=0))
+def _short(modes: int) -> Limits:
+    """For T-invariants that only save other work: few vectors more than there are modes at first."""
+    most = flows.Limits().rows
+    return Limits(flows=flows.Limits(rows=min(max(1_000, modes), most), work=20_000, programs=0))
 
 
 def _t_flows(skel: Skeleton, limits: Limits) -> flows.Flows:

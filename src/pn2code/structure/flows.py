@@ -103,7 +103,12 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
     for i, line in working.items():
         for c in line.rest:
             columns.setdefault(c, set()).add(i)
+    if columns and len(working) > limits.rows:
+        return [x.vector for x in working.values() if not x.rest], False
     _same_columns(working, columns)
+    supports = _Supports()
+    for line in working.values():
+        supports.add(line.support)
     work = 0
     growth = {c: _growth(working, members, c) for c, members in columns.items()}
     queue = [(n, c) for c, n in growth.items()]
@@ -119,25 +124,21 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
         if work > limits.work or len(working) > limits.rows:
             return [x.vector for x in working.values() if not x.rest], False
         # A combination is of minimal support if no third vector lies within the two.
-        by_row: dict[int, list[int]] = {}
-        for x in working.values():
-            by_row.setdefault(x.support & -x.support, []).append(x.support)
-        made = []
-        for i in plus:
-            for j in minus:
-                union = working[i].support | working[j].support
-                own = (working[i].support, working[j].support)
-                if _contains_third(union, own, by_row):
-                    continue
-                made.append(_combined(working[i], working[j], column))
+        made = [
+            _combined(working[i], working[j], column)
+            for i in plus
+            for j in minus
+            if not supports.has_third(working[i].support, working[j].support)
+        ]
         touched = {c for i in involved for c in working[i].rest if c != column}
         for i in involved:
             for c in working[i].rest:
                 if c != column:
                     columns[c].discard(i)
-            del working[i]
+            supports.remove(working.pop(i).support)
         for line in made:
             working[fresh] = line
+            supports.add(line.support)
             for c in line.rest:
                 columns[c].add(fresh)
             fresh += 1
@@ -157,6 +158,47 @@ class _Line:
     vector: Vector
     rest: Vector
     support: int
+
+
+class _Supports:
+    """The supports of the vectors, each found by its lowest row.
+
+    Attributes:
+        looked: how many rows were gone through.
+    """
+
+    def __init__(self) -> None:
+        self._by_row: dict[int, list[int]] = {}
+        self._lowest = 0
+        self.looked = 0
+
+    def add(self, support: int) -> None:
+        """One more; several may be equal."""
+        lowest = support & -support
+        self._by_row.setdefault(lowest, []).append(support)
+        self._lowest |= lowest
+
+    def remove(self, support: int) -> None:
+        """One that was added."""
+        lowest = support & -support
+        beginning = self._by_row[lowest]
+        beginning.remove(support)
+        if not beginning:
+            del self._by_row[lowest]
+            self._lowest ^= lowest
+
+    def has_third(self, one: int, other: int) -> bool:
+        """Whether a support that is neither of the two lies within both together."""
+        union = one | other
+        rest = union & self._lowest
+        while rest:
+            lowest = rest & -rest
+            self.looked += 1
+            for support in self._by_row[lowest]:
+                if support | union == union and support not in (one, other):
+                    return True
+            rest ^= lowest
+        return False
 
 
 def _growth(working: Mapping[int, _Line], members: Iterable[int], column: int) -> int:
@@ -183,17 +225,6 @@ def _same_columns(working: Mapping[int, _Line], columns: dict[int, set[int]]) ->
                 del working[i].rest[c]
             del columns[c]
         seen.add(key)
-
-
-def _contains_third(union: int, own: tuple[int, int], by_row: Mapping[int, list[int]]) -> bool:
-    rest = union
-    while rest:
-        lowest = rest & -rest
-        for support in by_row.get(lowest, ()):
-            if support | union == union and support not in own:
-                return True
-        rest ^= lowest
-    return False
 
 
 def _combined(one: _Line, other: _Line, column: int) -> _Line:
