@@ -15,10 +15,9 @@ from pn2code.base.frozen import frozen
 
 JSON = ".json"
 PROGRAMS = "generated"
-NETS = "nets.html"
 """The folder of the programs."""
+NETS = "nets.html"
 GEOMETRY = "--geometry"
-WAIT_S = 0.1
 
 
 @frozen

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any, cast
 
 from lark import Lark, Token, Transformer, Tree, v_args
@@ -16,7 +15,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
 from pn2code.base.parser_cache import kept_lark
-from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.diagnostics import Diagnostics, SourceText, Span
 from pn2code.diagnostics.expected import listed, literal
 from pn2code.robot.commands import Effect, Handling
 from pn2code.tdl import codes
@@ -26,11 +25,6 @@ from pn2code.tdl.types import MAX_INT, TYPES_BY_NAME, UNITS, Type
 
 MAX_EXPRESSION_DEPTH = 100
 MAX_BLOCK_DEPTH = 40
-
-
-def parse_file(path: Path, d: Diagnostics) -> t.Program | None:
-    """Parse a script file (UTF-8); reading errors are the caller's business."""
-    return parse(SourceText(path.read_text(encoding="utf-8"), Origin(str(path), 1, 1)), d)
 
 
 def parse(source: SourceText, d: Diagnostics) -> t.Program | None:

@@ -82,10 +82,6 @@ class Block(TypeSource):
         """See `TypeSource`."""
         return self.program.types.lower(self.type_of(t))
 
-    def list_type(self, element: IrType) -> IrType:
-        """The list type with these elements."""
-        return self.program.types.list_of(element)
-
     def element(self, t: IrType) -> IrType:
         """See `TypeSource`."""
         definition = self.program.types.definition(t)

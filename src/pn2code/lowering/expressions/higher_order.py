@@ -126,40 +126,6 @@ def filter_values(body: Body, values: Ir, test: Callable[[Ir], Ir]) -> Ir:
     return _reversed(body, out)
 
 
-def sort_values(body: Body, values: Ir, table: str) -> Ir:
-    """The elements in the order of a colour set, one of each: each goes in front of the first that is greater."""
-    in_order = _accumulator(body, values.type, "in_order")
-
-    def less(a: Ir, b: Ir) -> Ir:
-        return ir.Op("Colset.lt", (a, b), ir.BOOL, table)
-
-    def insert(x: Ir) -> None:
-        out = _accumulator(body, values.type)
-        placed = body.local("placed", ir.BOOL)
-        body.emit(ir.Let(placed, ir.Const(False, ir.BOOL), mutable=True))
-        is_open = negation(ir.Use(placed))
-
-        def pass_by(y: Ir) -> None:
-            comes_first = ir.Op("andalso", (is_open, body.atomic(less(x, y), "is_less")), ir.BOOL)
-            with body.block() as then:
-                _push(body, out, x)
-                body.emit(ir.Assign(placed, ir.Const(True, ir.BOOL)))
-            body.emit(ir.If(comes_first, tuple(then), ()))
-            is_same = ir.Op("andalso", (is_open, negation(less(y, x))), ir.BOOL)
-            leave_out = (ir.Assign(placed, ir.Const(True, ir.BOOL)),)
-            body.emit(ir.If(is_same, leave_out, ()))
-            _push(body, out, y)
-
-        _loop(body, ir.Use(in_order), pass_by)
-        with body.block() as then:
-            _push(body, out, x)
-        body.emit(ir.If(is_open, tuple(then), ()))
-        body.emit(ir.Assign(in_order, _reversed(body, out)))
-
-    _loop(body, values, insert)
-    return ir.Use(in_order)
-
-
 def _filter(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     f, values = arguments
     out = _accumulator(body, body.program.types.lower(result))
