@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 
 from helpers.generated import LARGE, is_checked
 from helpers.solvers import solver_for
-from helpers.thorough import amount
+from helpers.thorough import THOROUGH, amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.net.front import load
@@ -105,6 +105,8 @@ EXAMPLES = {
     ),
 }  # fmt: skip
 
+AGAIN = ("sorting", "palletiser", "handover")
+"""Generated twice in each run of the tests; `make thorough` generates all of them twice."""
 FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
 
@@ -132,9 +134,10 @@ def generated(example: tuple[Path, Expected], of_example: Callable[..., Generate
 def test_generation_has_nothing_to_say_and_is_deterministic(
     example: tuple[Path, Expected], generated: Generated
 ) -> None:
-    again = generate(example[0], Diagnostics(), checked=is_checked(example[0].name))
-    assert again is not None
-    assert again.files == generated.files
+    if THOROUGH or example[0].name in AGAIN:
+        again = generate(example[0], Diagnostics(), checked=is_checked(example[0].name))
+        assert again is not None
+        assert again.files == generated.files
     assert tuple(o.name for o in generated.partition.owners) == example[1].owners
     paths = {f.path for f in generated.files}
     assert {f"{name}.tdl" for name in example[1].owners[1:]} < paths
@@ -233,7 +236,7 @@ def _replay_believes_nothing(trace: Path, folder: Path) -> None:
     """The verb accepts the run, and none in which something is claimed that is not so."""
     assert CliRunner().invoke(app, ["replay", str(trace), str(folder)]).exit_code == 0
     judge = Judge(trace, folder)
-    found = random.Random(folder.name).sample(list(forgeries(judge.text)), amount(30, 300))
+    found = random.Random(folder.name).sample(list(forgeries(judge.text)), amount(10, 300))
     assert not [f.what for f in found if judge.verdict(f)[0] in WRONG]
     text = trace.read_text(encoding="utf-8")
     trace.write_text(text.replace('"digest": "', '"digest": "0'), encoding="utf-8")
