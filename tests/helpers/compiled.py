@@ -44,6 +44,8 @@ WARNINGS = (
     "-Wswitch-enum", "-Wvla",
     "-Wno-tautological-compare",  # a net may well say `n < n`
 )  # fmt: skip
+SHARED = ("-pthread", "-fPIC")
+"""Explorers need them (`helpers.explored`): compiled alike everywhere, the runtime is compiled once."""
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
 ARENA = "arena"
@@ -105,7 +107,7 @@ class Workshop:
         """One object file; the test fails with the compiler's words."""
         # Named as from there, generated files are compiled in the same way in whichever folder they are.
         named = source.relative_to(include) if source.is_relative_to(include) else source
-        command = [self.compiler, *WARNINGS, *self.flags, *flags]
+        command = [self.compiler, *WARNINGS, *SHARED, *self.flags, *flags]
         command += [
             f"-I{cnative_folder() / 'include'}",
             "-I.",
