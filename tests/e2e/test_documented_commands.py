@@ -32,6 +32,7 @@ LONG = {
     "pn2code run examples/riveting --layout good --backend fake": "test_run_cell does the same",
     "pn2code run examples/minimal --backend fake --cycles 10": "test_many_cycles runs a smaller cell",
     "pn2code run examples/palletiser": "PyBullet with pictures; test_carrying does it with a smaller cell",
+    "pn2code contest DIR ReachabilityFireability": "test_contest_command does the same",
     "pn2code conform cell.toml --generated DIR": "test_conform does the same",
     "spin -a net.pml && gcc -O2 -DSAFETY -DNOREDUCE -o pan pan.c && ./pan -m20000000 -w24": "test_spin does the same",
     "pn2code run examples/riveting --input examples/riveting/faults": "the same",

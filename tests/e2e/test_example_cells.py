@@ -106,7 +106,7 @@ EXAMPLES = {
 }  # fmt: skip
 
 AGAIN = ("sorting", "palletiser", "handover")
-"""Generated twice in each run of the tests; `make thorough` generates all of them twice."""
+"""Generated twice, and their runs forged, in each run of the tests; all of them are in `make thorough`."""
 FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
 
@@ -185,7 +185,9 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
     root: Path, tmp_path: Path
 ) -> None:
     """Endless, the timed cell has infinitely many states with their times."""
-    options = ["--reduce", "time", "--set", "endless=true", "--no-found", "--no-medium"]
+    options = [
+        "--reduce", "time", "--set", "endless=true", "--no-found", "--no-medium", "--no-controller"
+    ]  # fmt: skip
     asked = ["--property", "ctl AG EF initial", "--property", "deadlock free", "--threads", "1"]
     said = _verified(root / "examples/timed", *options, *asked, "--traces", str(tmp_path))
     assert said["complete"] and said["reductions"] == ["time"]
@@ -229,14 +231,15 @@ def test_run(
     found = replay(tmp_path / f"{expected.net}.trace.jsonl", net)
     assert found.ok, found.message()
     assert (found.steps, found.ended) == (len(occurred), "finished")
-    _replay_believes_nothing(tmp_path / f"{expected.net}.trace.jsonl", folder)
+    if THOROUGH or folder.name in AGAIN:
+        _replay_believes_nothing(tmp_path / f"{expected.net}.trace.jsonl", folder)
 
 
 def _replay_believes_nothing(trace: Path, folder: Path) -> None:
     """The verb accepts the run, and none in which something is claimed that is not so."""
     assert CliRunner().invoke(app, ["replay", str(trace), str(folder)]).exit_code == 0
     judge = Judge(trace, folder)
-    found = random.Random(folder.name).sample(list(forgeries(judge.text)), amount(10, 300))
+    found = random.Random(folder.name).sample(list(forgeries(judge.text)), amount(30, 300))
     assert not [f.what for f in found if judge.verdict(f)[0] in WRONG]
     text = trace.read_text(encoding="utf-8")
     trace.write_text(text.replace('"digest": "', '"digest": "0'), encoding="utf-8")
