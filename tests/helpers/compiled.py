@@ -48,6 +48,7 @@ SHARED = ("-pthread", "-fPIC")
 """Explorers need them (`helpers.explored`): compiled alike everywhere, the runtime is compiled once."""
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+QUICK = ("-O0",)
 ARENA = "arena"
 """The file with the bytes that a net's lists, strings and moves get."""
 DELIVERED = programs.FLAGS

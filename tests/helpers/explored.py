@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from helpers import linker
-from helpers.compiled import RUNTIME, WARNINGS
+from helpers.compiled import QUICK, RUNTIME, WARNINGS
 from helpers.compiled import SHARED as AS_ELSEWHERE
 from helpers.graph_facts import Facts
 from pn2code.base.resources import cnative_folder
@@ -31,7 +31,6 @@ from pn2code.semantics.game.marking import binding_to_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verify.exploring.programs import Sizes, generated
 
-QUICK = ("-O0",)
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADS = ("-g1", "-O0", "-fsanitize=thread")
 SECONDS = 600
