@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from helpers import delivered_runtime, in_memory, remembering_cc, tiny_compiler
-from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
+from helpers.compiled import DELIVERED, FAST, QUICK, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
 from pn2code.base import kept_answers
@@ -156,5 +156,5 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
 
 @pytest.fixture(scope="session")
 def fast_workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    """The same without sanitizers, optimized a little."""
-    return _workshop(tmp_path_factory, "fast", FAST)
+    """The same without sanitizers; optimized a little in `make thorough`, as explorers are compiled otherwise."""
+    return _workshop(tmp_path_factory, "fast", FAST if THOROUGH else QUICK)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import RIVETS, riveting_cell, riveting_path
+from helpers.thorough import amount
 from pn2code.robot.backend import Camera
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
@@ -17,19 +18,20 @@ EXACT = 1e-9  # m: 1e-6 mm
 BULLET = 1e-6  # m: PyBullet's TCP is about 1e-7 m from ours; poses are judged by our kinematics
 STEP = 0.1  # s between samples: coarse, to be quick
 
-BACKENDS = ["fake", pytest.param("bullet", marks=pytest.mark.bullet)]
+PATHS = [
+    ("fake", "good"),
+    pytest.param("bullet", "paper", marks=pytest.mark.bullet),
+    pytest.param("bullet", "good", marks=pytest.mark.bullet),
+    ("fake", "paper"),
+]
+"""Backends and layouts."""
 CONDITIONS = {
     "good": [8.8, 8.6, 8.4, 8.4, 8.4, 8.6, 8.8],
     "paper": [13.9, 14.2, 15.2, 16.9, 20.0, 26.9, 102.1],
 }
 
 
-@pytest.fixture(params=BACKENDS)
-def backend_name(request):
-    return request.param
-
-
-@pytest.mark.parametrize("layout", ["good", "paper"])
+@pytest.mark.parametrize(("backend_name", "layout"), PATHS[: amount(2, 4)])
 def test_the_whole_path(backend_name, layout):
     cell = riveting_cell(layout)
     backend = open_backend(backend_name, cell)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
+from helpers.geometry_told import tell
 from helpers.meeting_cell import NET, TOML, meeting_cell
-from pn2code.cli.main import app
 
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
 
@@ -33,15 +30,10 @@ def coloured(net: str = NET) -> str:
     return out
 
 
-def looked(cell: Path) -> dict[str, Any]:
-    done = CliRunner().invoke(app, ["check", "--geometry", "--json", str(cell)])
-    (layout,) = json.loads(done.stdout)["layouts"]
-    return dict(layout)
-
-
 def test_a_coloured_place_tells_who_is_there_and_why(tmp_path: Path) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=False, net=coloured())
-    found = looked(cell)
+    told = tell(cell, tmp_path)
+    found = told.layout
     assert (found["moves_answer"], found["pairs_answer"]) == ("yes", "no")
     (proposal,) = found["proposals"]
     assert proposal["works"], proposal
@@ -50,7 +42,7 @@ def test_a_coloured_place_tells_who_is_there_and_why(tmp_path: Path) -> None:
     assert proposal["gives_when"] == ["n = 2", "n = 2"]
     assert proposal["while"] == ["Top.Supervisor.Doing"] * 2
     assert proposal["while_with"] == ["#1 = 1 and #2 = 2", "#1 = 2 and #2 = 2"]
-    done = CliRunner().invoke(app, ["check", "--geometry", str(cell)])
+    done = told.command()
     assert (
         "taken by `Top.Supervisor.Send1` if `n = 2`, `Top.Supervisor.Send2` if `n = 2`"
         in done.stdout
@@ -62,7 +54,7 @@ def test_with_the_place_that_is_proposed_arms_keep_apart(tmp_path: Path) -> None
     """As it is drawn after what was said."""
     net = coloured().replace("TAKE", "in Free : if n = 2 then 1`() else empty")
     net = net.replace("GIVE", "out Free : if n = 2 then 1`() else empty")
-    found = looked(meeting_cell(tmp_path / "cell", guarded=True, net=net))
+    found = tell(meeting_cell(tmp_path / "cell", guarded=True, net=net), tmp_path).layout
     assert (found["moves_answer"], found["pairs_answer"]) == ("yes", "yes")
 
 
@@ -102,7 +94,9 @@ def test_one_transition_for_all_robots(tmp_path: Path) -> None:
 """
         + net[end:]
     )
-    found = looked(meeting_cell(tmp_path / "cell", guarded=False, net=net, toml=TOML))
+    found = tell(
+        meeting_cell(tmp_path / "cell", guarded=False, net=net, toml=TOML), tmp_path
+    ).layout
     assert found["pairs_answer"] == "no"
     (proposal,) = found["proposals"]
     assert proposal["works"], proposal
@@ -110,7 +104,9 @@ def test_one_transition_for_all_robots(tmp_path: Path) -> None:
     assert proposal["gives"] == ["Top.Supervisor.Got1", "Top.Supervisor.Got2"]
     assert proposal["while_with"] == ["#1 = 1", "#1 = 2"]
     guarded = net.replace("    trans Send guard", "    trans Send guard")
-    found = looked(meeting_cell(tmp_path / "guarded", guarded=True, net=guarded, toml=TOML))
+    found = tell(
+        meeting_cell(tmp_path / "guarded", guarded=True, net=guarded, toml=TOML), tmp_path
+    ).layout
     assert found["pairs_answer"] == "yes"
 
 
@@ -119,14 +115,14 @@ def test_an_arm_that_rests_there_is_told_as_such(tmp_path: Path) -> None:
     stays = NET.replace("work (); moveLinear (at (1100.0, rz)); moveHome ());", "work ());")
     assert stays != NET
     cell = meeting_cell(tmp_path / "stays", guarded=False, net=stays)
-    found = looked(cell)
-    (proposal,) = found["proposals"]
+    told = tell(cell, tmp_path)
+    (proposal,) = told.layout["proposals"]
     assert {(x["robot"], x["from_start"]) for x in proposal["rests"]} <= {
         ("robot1", False),
         ("robot2", False),
     }
     assert proposal["rests"] and not any("at rest" in x for x in proposal["transitions"])
-    done = CliRunner().invoke(app, ["check", "--geometry", str(cell)])
+    done = told.command()
     assert "share a zone" not in done.stdout and "come to where robot1" in done.stdout
     assert "rests at 1500 0 700, 180 0" in done.stdout
     assert "where a command has left it: bring it out" in done.stdout
@@ -138,8 +134,9 @@ def test_an_arm_that_rests_there_is_told_as_such(tmp_path: Path) -> None:
     )
     assert idle != NET and toml != TOML
     cell = meeting_cell(tmp_path / "idle", guarded=False, net=idle, toml=toml)
-    (proposal,) = looked(cell)["proposals"]
+    told = tell(cell, tmp_path)
+    (proposal,) = told.layout["proposals"]
     assert [(x["robot"], x["from_start"]) for x in proposal["rests"]] == [("robot2", True)]
-    done = CliRunner().invoke(app, ["check", "--geometry", str(cell)])
+    done = told.command()
     assert "`Top.Robot1.Visit1` comes to where robot2 rests" in done.stdout
     assert "from the start of each run, so that no place alone keeps them apart" in done.stdout

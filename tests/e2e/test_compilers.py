@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from helpers.generated import is_checked
+from helpers.thorough import amount
 from helpers.traced_runs import make, traces
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
@@ -29,7 +30,7 @@ def _there() -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", ["sorting", "timed"])
+@pytest.mark.parametrize("name", ["riveting", "sorting", "timed"][: amount(1, 3)])
 def test_traces_are_the_same(
     name: str, of_example: Callable[..., Generated], tmp_path: Path
 ) -> None:

@@ -429,10 +429,15 @@ def edited(cell: Path, folder: Path, **texts: str) -> Path:
     ],
 )
 def test_files_that_no_state_shows(
-    name: str, said: str, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    said: str,
+    cell: Path,
+    fresh: tuple[OutputFile, ...],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     folder = edited(cell, tmp_path / "generated", **{name: "\n"})
-    found = compare(folder, fresh(cell), Diagnostics())
+    found = compare(folder, fresh, Diagnostics())
     assert found is not None
     assert found[0].deviates
     assert name in (*found[0].differing, *found[0].intruding)
@@ -442,6 +447,7 @@ def test_files_that_no_state_shows(
     assert f"`{name}` {said}" in done.output
 
 
+@pytest.fixture(scope="module")
 def fresh(cell: Path) -> tuple[OutputFile, ...]:
     made = generate(cell, Diagnostics())
     assert made is not None

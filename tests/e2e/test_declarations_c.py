@@ -13,7 +13,7 @@ from helpers.compiled import Workshop, agrees, lowered
 from helpers.declarations import OPTIMIZED, wrong
 from helpers.netbuilder import flat
 from helpers.random_declarations import CASES, Sheet, case
-from helpers.thorough import amount
+from helpers.thorough import THOROUGH, amount
 
 pytestmark = pytest.mark.cc
 
@@ -22,8 +22,12 @@ EVERY = 19
 
 
 @pytest.fixture(scope="module")
-def optimized(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    return Workshop.open(tmp_path_factory.mktemp("optimized"), OPTIMIZED)
+def optimized(tmp_path_factory: pytest.TempPathFactory, fast_workshop: Workshop) -> Workshop:
+    """The nets are optimized; the runtime is that of other tests, but in `make thorough`."""
+    folder = tmp_path_factory.mktemp("optimized")
+    if THOROUGH:
+        return Workshop.open(folder, OPTIMIZED)
+    return Workshop.of(fast_workshop.runtime, folder, OPTIMIZED)
 
 
 @pytest.mark.parametrize("start", range(amount(1, EVERY)))

@@ -15,7 +15,7 @@ from tools.oracle.compare import Seen, has_ties
 from tools.oracle.idioms import answers, digest, nets
 
 from helpers.netbuilder import cpn
-from helpers.thorough import THOROUGH
+from helpers.thorough import THOROUGH, amount
 from pn2code.semantics.evaluation.effects import Effects, outside
 from pn2code.semantics.game.graph import state_space
 from pn2code.structure.analysis import analyse
@@ -77,7 +77,8 @@ def test_what_the_engine_says(name: str, seen: Seen) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in NETS if "space" in KEPT[name] and name not in OTHER_SPACE]
+    "name",
+    [name for name in NETS if "space" in KEPT[name] and name not in OTHER_SPACE][:: amount(2, 1)],
 )
 def test_the_size_of_the_state_space(name: str, seen: Seen) -> None:
     kept = KEPT[name]["space"]
@@ -91,7 +92,7 @@ def test_the_size_of_the_state_space(name: str, seen: Seen) -> None:
     assert found == (kept["nodes"], kept["arcs"], len(kept["dead"]))
 
 
-@pytest.mark.parametrize("name", [name for name in NETS if "run" in KEPT[name]])
+@pytest.mark.parametrize("name", [name for name in NETS if "run" in KEPT[name]][:: amount(3, 1)])
 def test_the_bounds_of_the_structure_hold_in_the_run(name: str, seen: Seen) -> None:
     """Any inscription can be looked at, and what is said is true of the end of the engine's run."""
     assert seen.net is not None

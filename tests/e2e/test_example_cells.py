@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 
 from helpers.generated import LARGE, is_checked
 from helpers.solvers import solver_for
-from helpers.thorough import amount
+from helpers.thorough import THOROUGH, amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.net.front import load
@@ -105,6 +105,8 @@ EXAMPLES = {
     ),
 }  # fmt: skip
 
+AGAIN = ("sorting", "palletiser", "handover")
+"""Generated twice, and their runs forged, in each run of the tests; all of them are in `make thorough`."""
 FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
 
@@ -132,9 +134,10 @@ def generated(example: tuple[Path, Expected], of_example: Callable[..., Generate
 def test_generation_has_nothing_to_say_and_is_deterministic(
     example: tuple[Path, Expected], generated: Generated
 ) -> None:
-    again = generate(example[0], Diagnostics(), checked=is_checked(example[0].name))
-    assert again is not None
-    assert again.files == generated.files
+    if THOROUGH or example[0].name in AGAIN:
+        again = generate(example[0], Diagnostics(), checked=is_checked(example[0].name))
+        assert again is not None
+        assert again.files == generated.files
     assert tuple(o.name for o in generated.partition.owners) == example[1].owners
     paths = {f.path for f in generated.files}
     assert {f"{name}.tdl" for name in example[1].owners[1:]} < paths
@@ -182,7 +185,9 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
     root: Path, tmp_path: Path
 ) -> None:
     """Endless, the timed cell has infinitely many states with their times."""
-    options = ["--reduce", "time", "--set", "endless=true", "--no-found", "--no-medium"]
+    options = [
+        "--reduce", "time", "--set", "endless=true", "--no-found", "--no-medium", "--no-controller"
+    ]  # fmt: skip
     asked = ["--property", "ctl AG EF initial", "--property", "deadlock free", "--threads", "1"]
     said = _verified(root / "examples/timed", *options, *asked, "--traces", str(tmp_path))
     assert said["complete"] and said["reductions"] == ["time"]
@@ -226,7 +231,8 @@ def test_run(
     found = replay(tmp_path / f"{expected.net}.trace.jsonl", net)
     assert found.ok, found.message()
     assert (found.steps, found.ended) == (len(occurred), "finished")
-    _replay_believes_nothing(tmp_path / f"{expected.net}.trace.jsonl", folder)
+    if THOROUGH or folder.name in AGAIN:
+        _replay_believes_nothing(tmp_path / f"{expected.net}.trace.jsonl", folder)
 
 
 def _replay_believes_nothing(trace: Path, folder: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 from helpers.explored import Explorers, agrees, explorer_test
 from helpers.netbuilder import flat
 from helpers.random_graphs import numbered
+from helpers.thorough import amount
 from pn2code.verify.exploring.programs import HOST
 
 pytestmark = pytest.mark.cc
@@ -36,7 +37,7 @@ def _says(program: Path, part: str, seed: int) -> str:
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", range(1, 1 + amount(1, 2)))
 @pytest.mark.parametrize("part", ["store", "numbers", "memory", "threads"])
 def test_against_plain_tables(checked: Path, part: str, seed: int) -> None:
     assert _says(checked, part, seed) == "fine\n"

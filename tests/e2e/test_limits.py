@@ -14,6 +14,7 @@ import pytest
 from helpers import processes
 from helpers.netbuilder import cpn
 from helpers.processes import Command
+from helpers.thorough import THOROUGH, amount
 from pn2code.semantics.evaluation.evaluate import Limits
 from pn2code.semantics.game import token_game
 from pn2code.simulate import compiled, programs
@@ -27,6 +28,13 @@ def bounded() -> None:
     (has_kb,) = (int(x.split()[1]) for x in status.splitlines() if x.startswith("VmData:"))
     most = GIGABYTE + has_kb * 1024
     resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+
+
+def impatient() -> None:
+    """The same, and an initial marking is given up after fewer steps."""
+    bounded()
+    assert token_game.AT_START.steps is not None
+    token_game.AT_START = Limits(steps=token_game.AT_START.steps // 20)
 
 
 def pn2code(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -51,28 +59,31 @@ def test_a_file_beyond_the_limit_is_refused_unread(tmp_path: Path) -> None:
 
 
 def test_a_hundred_megabytes_of_elements_are_refused(tmp_path: Path) -> None:
+    """They are too many after the first sixteen."""
     one = b"<place id='ID1'><text>A</text></place>\n"
     head, tail = b"<workspaceElements><cpnet><page id='P'>", b"</page></cpnet></workspaceElements>"
-    size = 100 * 1024 * 1024 - len(head) - len(tail)
+    size = amount(20, 100) * 1024 * 1024 - len(head) - len(tail)
     done = check(tmp_path, head + one * (size // len(one)) + tail)
     assert done.returncode == 1
     assert "xml-limit" in done.stdout + done.stderr
 
 
 def test_ten_thousand_places(tmp_path: Path) -> None:
-    places = "\n".join(f"  place P{i} : INT = 1`{i}" for i in range(10_000))
+    count = amount(3_000, 10_000)
+    places = "\n".join(f"  place P{i} : INT = 1`{i}" for i in range(count))
     done = check(tmp_path, cpn(f"net Many\n  standard\n{places}\n"))
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "10000 places" in done.stdout
+    assert f"{count} places" in done.stdout
 
 
 def test_a_thousand_pages(tmp_path: Path) -> None:
     text = "net Pages\n  standard\n  var n: INT;\n"
-    for i in range(1_000):
+    count = amount(300, 1_000)
+    for i in range(count):
         text += f"  page Page{i}\n    place P : INT = 1`1\n    trans T\n      in P : n\n"
     done = check(tmp_path, cpn(text))
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "1000 pages" in done.stdout
+    assert f"{count} pages" in done.stdout
 
 
 def test_ten_thousand_constructors(tmp_path: Path) -> None:
@@ -110,9 +121,10 @@ def test_a_megabyte_of_inscription(tmp_path: Path, term: str) -> None:
 def test_an_endless_or_huge_initial_marking_is_given_up(
     tmp_path: Path, text: str, said: str
 ) -> None:
+    """After fewer steps than for users, but in `make thorough`."""
     path = tmp_path / "net.cpn"
     path.write_bytes(cpn(f"net Endless\n  standard\n  place P : INT = {text}\n"))
-    done = pn2code("marking", path)
+    done = processes.pn2code("marking", path, prepare=bounded if THOROUGH else impatient)
     assert done.returncode == 1
     assert said in done.stdout + done.stderr
     assert "initial marking" in done.stdout + done.stderr
@@ -120,12 +132,6 @@ def test_an_endless_or_huge_initial_marking_is_given_up(
 
 def test_an_endless_loop_in_an_initial_marking_is_given_up(tmp_path: Path) -> None:
     """It needs no more memory for more steps, so it is given up after fewer than for users."""
-
-    def impatient() -> None:
-        bounded()
-        assert token_game.AT_START.steps is not None
-        token_game.AT_START = Limits(steps=token_game.AT_START.steps // 20)
-
     path = tmp_path / "net.cpn"
     path.write_bytes(cpn("net Endless\n  standard\n  place P : INT = (while true do (); 1)\n"))
     done = processes.pn2code("marking", path, prepare=impatient)

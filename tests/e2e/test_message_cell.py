@@ -172,7 +172,7 @@ def test_the_message_that_comes_first_is_blamed(tmp_path: Path) -> None:
     )
     toml = TOML + '[[channel]]\nplace = "more"\nfile = "more.txt"\nkind = "data"\n'
     cell = small_cell.write(tmp_path / "cell", net, toml)
-    options = ["--no-found", "--json", "--threads", "1", "--traces", str(tmp_path)]
+    options = ["--no-found", "--no-medium", "--json", "--threads", "1", "--traces", str(tmp_path)]
     done = CliRunner().invoke(app, ["verify", str(cell), *options])
     assert done.exit_code == 1, done.output
     said = json.loads(done.stdout)

@@ -44,8 +44,11 @@ WARNINGS = (
     "-Wswitch-enum", "-Wvla",
     "-Wno-tautological-compare",  # a net may well say `n < n`
 )  # fmt: skip
+SHARED = ("-pthread", "-fPIC")
+"""Explorers need them (`helpers.explored`): compiled alike everywhere, the runtime is compiled once."""
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+QUICK = ("-O0",)
 ARENA = "arena"
 """The file with the bytes that a net's lists, strings and moves get."""
 DELIVERED = programs.FLAGS
@@ -105,7 +108,7 @@ class Workshop:
         """One object file; the test fails with the compiler's words."""
         # Named as from there, generated files are compiled in the same way in whichever folder they are.
         named = source.relative_to(include) if source.is_relative_to(include) else source
-        command = [self.compiler, *WARNINGS, *self.flags, *flags]
+        command = [self.compiler, *WARNINGS, *SHARED, *self.flags, *flags]
         command += [
             f"-I{cnative_folder() / 'include'}",
             "-I.",

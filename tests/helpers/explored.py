@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from helpers import linker
-from helpers.compiled import WARNINGS
+from helpers.compiled import QUICK, RUNTIME, WARNINGS
+from helpers.compiled import SHARED as AS_ELSEWHERE
 from helpers.graph_facts import Facts
 from pn2code.base.resources import cnative_folder
 from pn2code.diagnostics import Diagnostics
@@ -30,7 +31,6 @@ from pn2code.semantics.game.marking import binding_to_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verify.exploring.programs import Sizes, generated
 
-QUICK = ("-O0",)
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADS = ("-g1", "-O0", "-fsanitize=thread")
 SECONDS = 600
@@ -111,8 +111,12 @@ class Explorers:
         sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
         (host / "stub.c").write_text("char pn_net[1];\n")
         made._run(host, *SHARED, "stub.c", "-o", LIBRARY)
+        shared = {f"pn_{name}" for name in RUNTIME}
         for part in sources:
-            made._run(host, "-c", str(part))
+            if part.stem in shared:
+                made._compiled(host, part)
+            else:
+                made._run(host, "-c", str(part))
         objects = [str(f) for f in sorted(host.glob("*.o"))]
         made._run(host, "-rdynamic", *objects, LIBRARY, "-lm", "-o", "explore")
         others = [f for f in objects if not Path(f).name.startswith("explore")]
@@ -120,15 +124,15 @@ class Explorers:
         made._run(host, "-rdynamic", str(walker), *others, LIBRARY, "-lm", "-o", "walk")
         return made
 
+    def _compiled(self, folder: Path, source: Path) -> None:
+        """A source of the runtime, in the words of `helpers.compiled.Workshop`: its objects are the same."""
+        self._do(folder, WARNINGS, "-c", str(source), "-o", f"{source.stem}.o")
+
     def _run(self, folder: Path, *arguments: str) -> None:
-        command = [
-            self.compiler,
-            c_flags.STANDARD,
-            *c_flags.FLOATS,
-            "-pthread",
-            "-fPIC",
-            *self.flags,
-        ]
+        self._do(folder, (c_flags.STANDARD, *c_flags.FLOATS), *arguments)
+
+    def _do(self, folder: Path, language: Sequence[str], *arguments: str) -> None:
+        command = [self.compiler, *language, *AS_ELSEWHERE, *self.flags]
         command += [f"-I{cnative_folder() / 'include'}", "-I.", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]

@@ -14,9 +14,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
-from helpers.compiled import SANITIZERS, Workshop
+from helpers.compiled import QUICK, SANITIZERS, Workshop
 from helpers.compiled_expressions import PER_NET, Expressions, differing
-from helpers.explored import QUICK
 
 AT_ONCE = 50
 """Nets after which the declarations are made anew: they only grow."""

@@ -21,7 +21,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
-from helpers.explored import QUICK, SANITIZERS, Explorers, agrees
+from helpers.compiled import QUICK
+from helpers.explored import SANITIZERS, Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_graphs import WIDTHS, numbered
 from helpers.random_unions import Union, union

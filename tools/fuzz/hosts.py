@@ -15,7 +15,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
-from helpers.explored import QUICK, SANITIZERS
+from helpers.compiled import QUICK
+from helpers.explored import SANITIZERS
 from helpers.hosts import Hosts
 from helpers.unions import Outcome
 

@@ -16,9 +16,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
-from helpers.compiled import SANITIZERS, Workshop
+from helpers.compiled import QUICK, SANITIZERS, Workshop
 from helpers.declarations import culprits
-from helpers.explored import QUICK, Explorers
+from helpers.explored import Explorers
 from helpers.random_inscriptions import Inscriptions
 from helpers.unions import Outcome, check
 
