@@ -27,6 +27,8 @@ _SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)+")
 _ESCAPE = re.compile(r"\\(?:u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
 _SIMPLE = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", "e": "\x1b"}
 _PLAIN = re.compile(r"[^\s,\]}#]+")
+_RUN = {'"': re.compile(r'[^"\\\r]+'), "'": re.compile(r"[^'\r]+")}
+"""Characters in a string of that quote that stand for themselves."""
 
 
 @frozen
@@ -140,6 +142,8 @@ class _Scanner:
                 assert escape is not None, "tomllib has read the file"
                 made, at = self._unescaped(escape, at)
                 marks.append((length + len(made), *self._position(at)))
+            elif (run := _RUN[quote].match(self._text, at)) is not None:
+                made, at = run[0], run.end()
             elif self._text.startswith("\r\n", at):
                 made, at = "\n", at + 2
             else:
