@@ -108,7 +108,8 @@ class Explorers:
         host = made.host
         host.mkdir(parents=True)
         source = cnative_folder() / "src"
-        sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
+        others_own = (*OTHER_HOSTS, "pn_channel")
+        sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(others_own)]
         (host / "stub.c").write_text("char pn_net[1];\n")
         made._run(host, *SHARED, "stub.c", "-o", LIBRARY)
         for part in sources:

@@ -9,6 +9,7 @@ import copy
 import json
 import math
 import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -33,6 +34,8 @@ EDITOR = jsonschema.Draft202012Validator(SCHEMA)
 EVERY = [*keys(FULL)]
 WRONG = amount(1, 10)
 """Values that are wrong for a key, of all that `wrong` gives."""
+MISSPELT = amount(2, 100)
+"""Keys of a table."""
 
 
 def is_right(data: dict[str, Any], section: str) -> bool:
@@ -156,9 +159,13 @@ def test_each_wrong_value_is_refused_by_the_reader_and_by_editors(tmp_path: Path
 
 def test_each_misspelt_key_is_refused_by_the_reader_and_by_editors(tmp_path: Path) -> None:
     passed = []
+    tables: Counter[PathOf] = Counter()
     for path, key in EVERY:
         if key.name != path[-1]:
             continue  # a name that is chosen
+        tables[path[:-1]] += 1
+        if tables[path[:-1]] > MISSPELT:
+            continue
         data = changed(path)
         table: Any = data
         for part in path[:-1]:
