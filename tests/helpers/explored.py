@@ -108,8 +108,7 @@ class Explorers:
         host = made.host
         host.mkdir(parents=True)
         source = cnative_folder() / "src"
-        others_own = (*OTHER_HOSTS, "pn_channel")
-        sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(others_own)]
+        sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
         (host / "stub.c").write_text("char pn_net[1];\n")
         made._run(host, *SHARED, "stub.c", "-o", LIBRARY)
         for part in sources:
