@@ -92,7 +92,7 @@ def test_compiled_nets_say_the_same(fast_workshop: Workshop, tmp_path: Path) -> 
     )
     ir, d = lowered(flat(text))
     assert ir is not None, [e.message for e in d.errors]
-    [line] = run(fast_workshop.build(ir, tmp_path / "net"), 1, 0)
+    [line] = run(fast_workshop.build(ir, tmp_path / "net", "walk", "-O0"), 1, 0)
     assert "error" not in line, line
     for i, some in enumerate(places):
         found = line["marking"][f"Top.P{i}"][0][1].split("|")

@@ -13,6 +13,7 @@ from helpers.other_browsers import Other, firefox, webkit
 from helpers.played import served
 from helpers.processes import pn2code
 from helpers.shown import described, opened, with_arm
+from helpers.thorough import THOROUGH
 from pn2code.replay.page import page
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.report import places
@@ -134,6 +135,7 @@ def test_a_graph(browser: Other, root: Path, tmp_path: Path) -> None:
     assert browser.errors() == []
 
 
+@pytest.mark.skipif(not THOROUGH, reason="Chromium does it in each run (test_replay_page)")
 def test_without_webgl(tmp_path: Path) -> None:
     run = with_arm(described(tmp_path, steps=STEPS))
     with firefox(with_webgl=False) as browser:

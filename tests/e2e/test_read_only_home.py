@@ -64,7 +64,7 @@ def test_a_process_of_its_own(net: Path, closed: Path, once_compiler: Path, tmp_
     room = tmp_path / "room"
     room.mkdir()
     own = where(closed, once_compiler, room, PYTHONDONTWRITEBYTECODE="1")
-    done = alone("conform", net, "--json", env=own, cwd=tmp_path)
+    done = alone("simulate", net, "--json", "--engine", "compiled", env=own, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert f"{NOTE}`{closed}/.cache/pn2code` cannot be made: permission denied" in done.stderr
     assert done.stderr.count("warning") == 1

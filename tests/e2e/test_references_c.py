@@ -102,7 +102,7 @@ def test_no_state_space_where_a_guard_assigns() -> None:
     assert "`Top.End`" in next(iter(d.errors)).message
 
 
-@pytest.mark.parametrize("number", range(amount(2, 80)))
+@pytest.mark.parametrize("number", range(amount(1, 80)))
 def test_random_nets_with_references(sanitized: Explorers, number: int) -> None:
     """Also with two threads asked for, depth first, and in walks; `./dev fuzz --references N` takes more."""
     done: Outcome = check(sanitized, referring(number, 16))

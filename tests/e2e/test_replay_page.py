@@ -438,6 +438,29 @@ def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any
             assert inside and width >= 5
 
 
+WITHOUT_WEBGL = """
+    const own = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...how) {
+        return kind.includes("webgl") ? null : own.call(this, kind, ...how);
+    };
+"""
+
+
+@pytest.mark.cc
+def test_without_webgl_the_rest_of_the_page_works(shown: Shown, chromium: Any) -> None:
+    """Firefox without it: test_other_browsers."""
+    with opened(chromium) as browser:
+        browser.page.add_init_script(WITHOUT_WEBGL)
+        browser.open(shown.file)
+        said = browser.ask("() => document.querySelector('.missing').textContent")
+        assert "this browser has no WebGL" in said
+        keys = browser.page.keyboard
+        keys.press("Home")
+        before = browser.ask("() => replay.page.clock.k")
+        keys.press("ArrowRight")
+        assert browser.ask("() => replay.page.clock.k") == before + 1
+
+
 DRAWN_BY = """
     for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
         const own = kind.prototype.getParameter;

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from helpers.rivet_rows import Row, printed, rows
+from helpers.thorough import amount
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
@@ -322,7 +323,7 @@ pose = st.tuples(coordinate, coordinate, coordinate, angle, angle, angle)
 
 
 @settings(
-    max_examples=15,
+    max_examples=amount(8, 15),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
@@ -336,9 +337,10 @@ def test_any_seam_gives_the_rows_of_the_oracle(
         same(ours, theirs)
 
 
-def test_five_hundred_points(nets: dict[bool, FlatNet]) -> None:
+def test_many_points(nets: dict[bool, FlatNet]) -> None:
+    n = amount(150, 500)
     last = (6750.0, 5998.8, 2035.05, -105.0, 0.0, 0.0)
-    run = play(nets[False], 500, FIRST, last)
-    for ours, theirs in zip(run.rows, rows(500, FIRST, last), strict=True):
-        assert len(ours) == 1 + 2 * 502 + 501 + 1
+    run = play(nets[False], n, FIRST, last)
+    for ours, theirs in zip(run.rows, rows(n, FIRST, last), strict=True):
+        assert len(ours) == 1 + 2 * (n + 2) + (n + 1) + 1
         same(ours, theirs)

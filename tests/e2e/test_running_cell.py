@@ -22,6 +22,7 @@ from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.division import divided
+from pn2code.run import engine
 from pn2code.run.cell import RunOptions, run_cell
 from pn2code.verdict.asked import gather
 from pn2code.verdict.controller import look
@@ -500,7 +501,10 @@ def test_the_script_that_knows_no_transition_stops_the_cell(tmp_path: Path) -> N
     assert lines[-1]["why"] not in ("finished", "")
 
 
-def test_the_script_that_goes_round_stops_the_cell(tmp_path: Path) -> None:
+def test_the_script_that_goes_round_stops_the_cell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "MOST_AT_ONCE", 500)
     lines = ran(write(tmp_path, DIZZY, toml(["A", "B"], TOOL)))
     assert lines[-1]["why"] == "failed"
 

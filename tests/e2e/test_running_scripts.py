@@ -389,7 +389,10 @@ def _cut(found: Exploration | None) -> Exploration:
     )
 
 
-def test_a_script_that_repeats_commands_of_no_time_ends_a_run(tmp_path: Path) -> None:
+def test_a_script_that_repeats_commands_of_no_time_ends_a_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "MOST_AT_ONCE", 500)
     other = turning("(if k > 5 then act () else act (); 1 - k)")
     text = net(
         TWO,
@@ -399,7 +402,7 @@ def test_a_script_that_repeats_commands_of_no_time_ends_a_run(tmp_path: Path) ->
     cell = toml(["A", "B"], TIMELESS + 'pause = { command = "wait" }\n')
     end = ran(write(tmp_path / "cell", text, cell))[-1]
     assert end["why"] == "failed"
-    assert "B carried out 10,000 commands at" in end["reason"]
+    assert "B carried out 500 commands at" in end["reason"]
     assert "without time passing" in end["reason"]
 
 

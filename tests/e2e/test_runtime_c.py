@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from helpers.compiled import RUNTIME, WARNINGS, Workshop
+from helpers.thorough import amount
 from pn2code.base.resources import cnative_folder
 
 pytestmark = pytest.mark.cc
@@ -62,7 +63,9 @@ def test_static_analysis_of_the_runtime_finds_nothing(tmp_path: Path) -> None:
     if compiler is None:
         pytest.skip("no gcc")
     include = f"-I{cnative_folder() / 'include'}"
-    for name in RUNTIME:  # one by one: what has not changed since the last run is remembered
+    for name in RUNTIME[
+        :: amount(3, 1)
+    ]:  # one by one: what has not changed since the last run is remembered
         source = str(next(cnative_folder().rglob(f"src/*/pn_{name}.c")))
         done = subprocess.run(
             [compiler, *WARNINGS, "-fanalyzer", "-O1", include, "-c", source, "-o", "x.o"],

@@ -19,6 +19,7 @@ import pytest
 from helpers.explored import Explorers, wide
 from helpers.netbuilder import flat, write
 from helpers.processes import Command, pn2code
+from helpers.thorough import amount
 from pn2code.base.private_folder import private_folder
 from pn2code.verify.exploring.programs import Sizes
 
@@ -147,7 +148,7 @@ def test_interrupted_while_it_explores(
     assert not list(room.iterdir())
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM][: amount(1, 2)])
 def test_interrupted_while_it_compiles(
     net: Path, room: Path, tmp_path: Path, number: signal.Signals
 ) -> None:

@@ -12,6 +12,7 @@ from helpers.netbuilder import write
 from helpers.processes import pn2code
 from helpers.small_cell import NET as CELL
 from helpers.small_cell import write as write_cell
+from helpers.thorough import amount
 from pn2code.verify.controller import proofs
 
 pytestmark = pytest.mark.cc
@@ -211,8 +212,11 @@ QUEUE = GROWING.replace("place Count : INT = 1`0", "place Count : L = 1`[]").rep
 )
 
 
-@pytest.mark.parametrize("text", [GROWING, QUEUE], ids=["a number", "a list"])
-@pytest.mark.parametrize("options", [(), ("--full",)], ids=["screen", "full"])
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [(GROWING, ()), (GROWING, ("--full",)), (QUEUE, ()), (QUEUE, ("--full",))][: amount(3, 4)],
+    ids=["a number", "a number, full", "a list", "a list, full"][: amount(3, 4)],
+)
 def test_what_grows_inside_a_token(tmp_path: Path, text: str, options: tuple[str, ...]) -> None:
     """No place holds more than one token, and there is no end of markings."""
     net = write(text, tmp_path / "net.cpn")

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from helpers.compiled import Workshop
+from helpers.thorough import amount
 from helpers.walks import Walk, nets, walk
 
 pytestmark = pytest.mark.cc
 
-EVERY = 17
+EVERY = amount(41, 17)
 """One net of so many; one of those of so many again with sanitizers."""
 
 

@@ -92,6 +92,7 @@ def test_a_cell_is_seen_from_before_its_start_to_after_its_end(
         assert browser.errors == [] and browser.dialogues == []
 
 
+@pytest.mark.usefixtures("quick_build")
 def test_a_run_says_where_it_is(root: Path, tmp_path: Path) -> None:
     """`run --realtime` leaves what a watch needs, also after its end."""
     out = tmp_path / "run"

@@ -17,12 +17,13 @@ from helpers.diagram_cases import (
     sanitized_engine,
 )
 from helpers.table_families import philosophers
+from helpers.thorough import amount
 from pn2code.contest.engine import Answer, Space, Task, ask
 from pn2code.contest.tables import Tables
 
 pytestmark = pytest.mark.cc
 
-NETS = 60
+NETS = amount(25, 60)
 """`./dev fuzz --diagrams N` takes more."""
 
 

@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from helpers.random_tables import Graph, random_branching, random_condition, random_tables
+from helpers.thorough import amount
 from pn2code.contest import linear
 from pn2code.contest.engine import Answer, Space, Task, ask, engine
 from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
-NETS = 150
+NETS = amount(60, 150)
 SECONDS = 600.0
 """Never needed: all methods come to their end."""
 

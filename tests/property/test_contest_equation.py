@@ -11,12 +11,13 @@ import pytest
 import scipy.optimize
 
 from helpers.random_tables import Graph, random_condition, random_tables
+from helpers.thorough import amount
 from pn2code.contest import certificates, conditions
 from pn2code.contest.conditions import AtMost, Dead
 from pn2code.contest.equation import StateEquation, wait_for_solver
 from pn2code.contest.tables import Tables
 
-NETS = 150
+NETS = amount(60, 150)
 
 
 def later() -> float:

@@ -11,12 +11,13 @@ import pytest
 
 from helpers.graph_equivalence import same_branching, same_steps, same_traces
 from helpers.random_tables import Graph, sparse_tables
+from helpers.thorough import amount
 from pn2code.contest.conditions import AtMost, Dead
 from pn2code.contest.reduction.net import Goal, Net
 from pn2code.contest.reduction.reduce import RULES, Rule, apply_all, reduced_for
 from pn2code.contest.tables import Tables
 
-NETS = 1500
+NETS = amount(750, 1500)
 LARGEST = 1500
 SMALL = 60
 """Markings of graphs that are compared path by path."""

@@ -11,6 +11,7 @@ import pytest
 
 from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_tables, sparse_tables
+from helpers.thorough import amount
 from pn2code.contest.engine import Answer, Task, ask, engine
 from pn2code.contest.examinations import Asked
 from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
@@ -69,7 +70,7 @@ def truth(graph: Graph, kind: str, f: Formula) -> bool:
 def test_what_is_left_of_a_formula_says_the_same(kind: str) -> None:
     """With some answers of the graph put in, in any order; often nothing is left."""
     decided = made = 0
-    for draw, tables, graph in nets(range(120)):
+    for draw, tables, graph in nets(range(amount(60, 120))):
         for f in formulas(draw, tables, kind, 6):
             wanted = truth(graph, kind, f)
             t = Temporal(tables, kind, f)
@@ -84,14 +85,14 @@ def test_what_is_left_of_a_formula_says_the_same(kind: str) -> None:
                     break
             decided += t.value is not None
             made += 1
-    assert made > 200 and 0.3 < decided / made < 0.95
+    assert made > amount(100, 200) and 0.3 < decided / made < 0.95
 
 
 @pytest.mark.parametrize("kind", ["ctl", "ltl"])
 def test_reduced_nets(program: Path, kind: str) -> None:
     """The engine says of the reduced net what is so in the graph of the net as it is."""
     true = made = joined = 0
-    for draw, tables, graph in nets(range(1000, 1220)):
+    for draw, tables, graph in nets(range(1000, 1000 + amount(110, 220))):
         texts, wanted = [], {}
         for f in formulas(draw, tables, kind, 4):
             smaller = smaller_for(tables, kind, f, until=time.monotonic() + SECONDS)
@@ -114,7 +115,7 @@ def test_reduced_nets(program: Path, kind: str) -> None:
 
 def test_linear_time_is_what_the_tableau_says(program: Path) -> None:
     """The automata and the engine, on formulas that nothing has made simpler."""
-    for draw, tables, graph in nets(range(2000, 2050)):
+    for draw, tables, graph in nets(range(2000, 2000 + amount(25, 50))):
         found = list(formulas(draw, tables, "ltl", 5))
         texts = [f"{i} {question(tables, 'ltl', f, {})}" for i, f in enumerate(found)]
         said = list(

@@ -17,7 +17,7 @@ from tools.fuzz.nets import MIXED, TIMED, bases
 ROOT = Path(__file__).resolve().parents[2]
 
 NOWHERE = Path("/nonexistent")
-CASES = amount(25, 400)
+CASES = amount(15, 400)
 
 
 def test_base_nets_are_accepted(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.robot_cells import arm_kinematics, riveting_cell
+from helpers.thorough import amount
 from pn2code.robot.commands import Pose
 from pn2code.robot.motion import MotionFault, plan_lin, plan_ptp
 from pn2code.robot.transforms import (
@@ -58,7 +59,7 @@ def positions(draw):
     return k.arm.lower + np.array([draw(unit) for _ in range(6)]) * (k.arm.upper - k.arm.lower)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=amount(30, 60), deadline=None)
 @given(positions())
 def test_every_solution_is_one(q):
     k = arm_kinematics()
@@ -69,7 +70,7 @@ def test_every_solution_is_one(q):
         assert k.limit_margin(s.q)[0] >= -1e-8
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=amount(20, 40), deadline=None)
 @given(positions(), positions(), st.floats(0.05, 1.0))
 def test_joint_moves_keep_their_limits(a, b, speed):
     cell = riveting_cell("good")
@@ -88,7 +89,7 @@ def test_joint_moves_keep_their_limits(a, b, speed):
         assert np.allclose(path, a + way[:, None] * (b - a), atol=1e-6)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=amount(20, 40), deadline=None)
 @given(
     positions(), st.tuples(*[st.floats(-0.15, 0.15)] * 3), st.tuples(*[st.floats(-0.4, 0.4)] * 3)
 )
@@ -113,7 +114,7 @@ def test_linear_moves_are_on_the_line_or_refused(q, shift, turn):
     assert np.abs(path[0] - q).max() < 1e-5
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=amount(20, 40), deadline=None)
 @given(positions(), st.sampled_from(range(3)), st.floats(0.05, 0.4))
 def test_no_line_leaps_where_it_begins(q, axis, angle):
     """With a straight wrist the axes before and after it are only known together."""

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from helpers.compiled import Workshop
 from helpers.netbuilder import load, write
 from helpers.random_nets import random_net
+from helpers.thorough import amount
 from helpers.walks import walk
 
 RELAXED = settings(
@@ -22,7 +23,7 @@ RELAXED = settings(
 
 
 @given(st.randoms(use_true_random=False))
-@settings(RELAXED, max_examples=40)
+@settings(RELAXED, max_examples=amount(20, 40))
 def test_random_nets_are_accepted(r: Random) -> None:
     text = random_net(r)
     flat, d = load(text)
@@ -38,7 +39,7 @@ def check(text: str, workshop: Workshop, seed: int) -> None:
 
 @pytest.mark.cc
 @given(st.randoms(use_true_random=False))
-@settings(RELAXED, max_examples=6, phases=[Phase.generate])
+@settings(RELAXED, max_examples=amount(3, 6), phases=[Phase.generate])
 def test_compiled_random_nets_do_what_the_token_game_does(workshop: Workshop, r: Random) -> None:
     check(random_net(r), workshop, 1)
 

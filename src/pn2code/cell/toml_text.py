@@ -27,6 +27,10 @@ _SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)+")
 _ESCAPE = re.compile(r"\\(?:u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
 _SIMPLE = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", "e": "\x1b"}
 _PLAIN = re.compile(r"[^\s,\]}#]+")
+_SHORT = re.compile(r"""(["'])([^"'\\\r\n]*)\1(?!\1)""")
+"""A string in which each character stands for itself, as most are."""
+_RUN = {'"': re.compile(r'[^"\\\r]+'), "'": re.compile(r"[^'\r]+")}
+"""Characters in a string of that quote that stand for themselves."""
 
 
 @frozen
@@ -119,6 +123,11 @@ class _Scanner:
         return self._line, at - self._text.rfind("\n", 0, at)
 
     def _string(self) -> SourceText:
+        short = _SHORT.match(self._text, self._at)
+        if short is not None:
+            line, column = self._position(self._at + 1)
+            self._at = short.end()
+            return SourceText(short[2], Origin(self._file, line, column), ((0, line, column),))
         quote = self._text[self._at]
         long = self._text.startswith(quote * 3, self._at)
         end_mark = quote * 3 if long else quote
@@ -140,6 +149,8 @@ class _Scanner:
                 assert escape is not None, "tomllib has read the file"
                 made, at = self._unescaped(escape, at)
                 marks.append((length + len(made), *self._position(at)))
+            elif (run := _RUN[quote].match(self._text, at)) is not None:
+                made, at = run[0], run.end()
             elif self._text.startswith("\r\n", at):
                 made, at = "\n", at + 2
             else:

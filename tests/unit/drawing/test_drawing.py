@@ -10,6 +10,7 @@ import pytest
 from lxml import etree
 
 from helpers import netbuilder
+from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
 from pn2code.drawing import geometry, text
 from pn2code.drawing.arrange import arrange
@@ -281,7 +282,7 @@ def _box(shape: etree._Element) -> geometry.Box:
 @pytest.mark.shared
 def test_every_page_of_the_collection(shared: Path) -> None:
     pages = 0
-    for path in sorted((shared / "corpus" / "nets").rglob("*.cpn")):
+    for path in sorted((shared / "corpus" / "nets").rglob("*.cpn"))[:: amount(3, 1)]:
         found = read_data(path.read_bytes(), path.name, Diagnostics())
         if found is None:
             continue
@@ -289,7 +290,7 @@ def test_every_page_of_the_collection(shared: Path) -> None:
             check_page(found, page)
             pages += 1
             check_positions(found, page)
-    assert pages > 400
+    assert pages > amount(130, 400)
 
 
 def check_positions(found: Document, page: RawPage) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from helpers.ml import shown
+from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml import codes
 from pn2code.ml.elaborate import ColsetSpec, Elaborator
@@ -92,13 +93,13 @@ def nets(shared: Path) -> Iterator[tuple[Path, bool]]:
 
 def test_all_declarations_can_be_parsed(shared: Path) -> None:
     parsed = failed = 0
-    for path, _ in nets(shared):
+    for path, _ in [*nets(shared)][:: amount(3, 1)]:
         for item in declarations(document_of(path).globbox):
             if isinstance(item, RawMl):
                 ok = parse_program(item.text, Diagnostics()) is not None
                 parsed += ok
                 failed += not ok
-    assert parsed > 800
+    assert parsed > amount(200, 800)
     assert failed == 0
 
 

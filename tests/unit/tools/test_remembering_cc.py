@@ -35,6 +35,7 @@ class Bench:
         )
         script.chmod(0o755)
         monkeypatch.setenv("PATH", f"{compilers}:{os.environ['PATH']}")
+        monkeypatch.setattr(remembering_cc, "_FLAGS", (STANDARD, "-O0"))  # for each test anew
         found = remembering_cc.made(folder / "front", self.store)
         assert found is not None
         self.compiler = found / "gcc"

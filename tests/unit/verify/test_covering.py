@@ -92,7 +92,7 @@ BOUNDED = {
 }  # fmt: skip
 
 
-def looked(net: FlatNet, walks: int = 40) -> Covering | None:
+def looked(net: FlatNet, walks: int = amount(10, 40)) -> Covering | None:
     return Search(net, {}).look(walks=walks)
 
 
@@ -178,7 +178,7 @@ def test_the_search_can_be_ended() -> None:
 
 def test_random_nets_with_finitely_many_markings() -> None:
     """Where the token game has seen all markings, there is no covering run."""
-    finite, nets = 0, amount(60, 600)
+    finite, nets = 0, amount(30, 600)
     for seed in range(nets):
         net = flat(random_net(Random(seed)))
         try:
