@@ -11,13 +11,9 @@ import pytest
 from tools import misra
 
 from helpers.remembered import remembered
-from helpers.thorough import THOROUGH
 
 
-def test_what_is_committed(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half of the time is for the generated net, which is looked at in `make thorough` (and by `make misra`)."""
-    if not THOROUGH:
-        monkeypatch.setattr(misra, "SOURCES", tuple(s for s in misra.SOURCES if s != "net.c"))
+def test_what_is_committed(root: Path) -> None:
     folder = root / "generated" / "riveting"
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".c", ".h"))
     own = (folder / "Makefile", Path(misra.__file__), misra.ADDON)
@@ -28,16 +24,14 @@ def test_what_is_committed(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         return [[("/".join(of), n) for of, n in required.items()], [*advisory.items()]]
 
     version = importlib.metadata.version("cppcheck-py")
-    found = remembered("misra", [*own, *files, *misra.SOURCES, version], look)
+    found = remembered("misra", [*own, *files, version], look)
     required = Counter({tuple(of.split("/", 1)): n for of, n in found[0]})
     advisory = Counter(dict(found[1]))
 
     assert (
         advisory["2.5"] > 0
     )  # which takes a comparison of files: of a macro that none of them uses
-    mistakes = misra.mistakes(required, misra.PAGE.read_text(encoding="utf-8"))
-    # The net alone needs some of the deviations.
-    assert [x for x in mistakes if THOROUGH or not x.endswith("is not needed any more")] == []
+    assert misra.mistakes(required, misra.PAGE.read_text(encoding="utf-8")) == []
 
 
 def test_rows_and_findings_have_to_fit() -> None:
