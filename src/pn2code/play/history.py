@@ -91,6 +91,11 @@ class History:
         return self.forgotten + len(self._entries)
 
     @property
+    def is_time(self) -> bool:
+        """Whether the last entry moved the clock on, and nothing else."""
+        return self.can_go_back and self.entry(self.position - 1).kind is Kind.TIME
+
+    @property
     def can_go_back(self) -> bool:
         """Whether there is an entry to take back."""
         return self.position > self.forgotten
