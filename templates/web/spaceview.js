@@ -46,7 +46,10 @@ export class SpaceView {
     this.at = this.position.state.position;
     const { nodes, arcs, why } = answer.result;
     const words = /** @type {Record<string, string>} */ ({ depth: "There are more, farther away.", nodes: "There are more than so many nodes.", stopped: "Stopped." });
-    this.note.textContent = `${nodes.length} markings, ${arcs.length} occurrences. ${words[why] ?? "That is all that can be reached from here."}`;
+    const failed = nodes.filter((/** @type {any} */ n) => n.failure).length;
+    const errors = failed ? ` In ${failed} of them the net raises an exception: what would follow is not known.` : "";
+    const whole = failed ? "" : "That is all that can be reached from here.";
+    this.note.textContent = `${nodes.length} markings, ${arcs.length} occurrences. ${words[why] ?? whole}${errors}`;
     this.stage.replaceChildren(this.picture(nodes, arcs));
   }
 
