@@ -46,6 +46,10 @@ if TYPE_CHECKING:
 Examine = Callable[[FlatNet, CellConfig | None, Diagnostics], None]
 
 
+def _nobody(stage: str) -> None:
+    """Nobody is told."""
+
+
 @frozen
 class Generated:
     """What the generator gives.
@@ -80,6 +84,7 @@ def generate(
     examine: Examine | None = None,
     inputs: Path | None = None,
     kept: KeptAnswers | None = None,
+    stage: Callable[[str], None] = _nobody,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
@@ -95,6 +100,8 @@ def generate(
     `kept` is what earlier commands have proved; what is proved now is added to it.
 
     `examine` looks at net and cell before anything that takes long; nothing is done after an error of it.
+
+    `stage` is told what takes the time.
 
     What a net may have but cannot do here (sockets, processes) is an error: a supervisor must not stop there.
     """
@@ -114,6 +121,7 @@ def generate(
     if partition is None or d.has_errors:
         return None
 
+    stage("translating the net")
     storage = config.storage if config else {}
     digest = program_digest(net, config, replaced, int_bits)
     ir = lower_net.lower(partition, storage, d, digest=digest)
@@ -127,6 +135,7 @@ def generate(
         return None
     begun_as = replace(partition, net=begun.net)
     given = begun.given, sorted(begun.checksums.items())
+    stage("proving what the programs rely on")
     question = kept_proofs.asked(kept if checked else None, begun_as, config, replaced, given)
     proofs = kept_proofs.recalled(question)
     if proofs is None:
@@ -145,6 +154,7 @@ def generate(
     if proofs is None or d.has_errors:
         return None
 
+    stage("writing the programs")
     version = pn2code.__version__
     deployed = with_place_capacities(ir, proofs.place_capacities)
     net_files = emit_c.emit(deployed, version)

@@ -173,6 +173,8 @@ export class PlayBar {
     const { steps, seconds, text, engine } = answer.result;
     const rate = seconds > 0.01 ? `, ${Math.round(steps / seconds).toLocaleString("en")} a second` : "";
     this.busy.textContent = `${steps.toLocaleString("en")} steps by ${engine}${rate}${text ? `: ${text}` : ""}`;
+    this.busy.title = this.busy.textContent;
+    if (text) this.actions.said(answer); // the bar may have no room for it
   }
 
   /** @param {boolean} on */

@@ -46,7 +46,10 @@ export class SpaceView {
     this.at = this.position.state.position;
     const { nodes, arcs, why } = answer.result;
     const words = /** @type {Record<string, string>} */ ({ depth: "There are more, farther away.", nodes: "There are more than so many nodes.", stopped: "Stopped." });
-    this.note.textContent = `${nodes.length} markings, ${arcs.length} occurrences. ${words[why] ?? "That is all that can be reached from here."}`;
+    const failed = nodes.filter((/** @type {any} */ n) => n.failure).length;
+    const errors = failed ? ` In ${failed} of them the net raises an exception: what would follow is not known.` : "";
+    const whole = failed ? "" : "That is all that can be reached from here.";
+    this.note.textContent = `${nodes.length} markings, ${arcs.length} occurrences. ${words[why] ?? whole}${errors}`;
     this.stage.replaceChildren(this.picture(nodes, arcs));
   }
 
@@ -135,14 +138,14 @@ export class SpaceView {
   node(node, i, at) {
     const { net } = this.position;
     const lines = node.changes.map((/** @type {any} */ c) => `${net.places[c[0]].short.replace(/\s+/g, " ")}: ${c[1]}`);
-    const head = i === 0 ? "here" : node.dead ? "dead" : "";
-    const title = [head, node.time && `time ${node.time}`].filter((x) => x).join(", ");
+    const state = node.dead ? "dead" : node.failure ? "error" : "";
+    const title = [i === 0 && "here", state, node.time && `time ${node.time}`].filter((x) => x).join(", ");
     const shown = lines.slice(0, LINES - (title ? 1 : 0));
     if (lines.length > shown.length) shown[shown.length - 1] += ` … +${lines.length - shown.length}`;
     const all = [...(title ? [title] : []), ...shown];
-    const kind = i === 0 ? "here" : node.dead ? "dead" : node.open ? "open" : "";
-    const group = svg("g", { class: `state ${kind}`, tabindex: "0", role: "button", "aria-label": shorten(`Marking ${i}${title ? `, ${title}` : ""}: ${lines.join("; ") || "as now"}`, 600) },
-      svg("title", { text: shorten(lines.join("\n") || "the marking of now", 4000) }),
+    const kind = i === 0 ? "here" : state || (node.open ? "open" : "");
+    const group = svg("g", { class: `state ${kind}`, tabindex: "0", role: "button", "aria-label": shorten(`Marking ${i}${title ? `, ${title}` : ""}${node.failure ? ` (${node.failure})` : ""}: ${lines.join("; ") || "as now"}`, 600) },
+      svg("title", { text: shorten([...(node.failure ? [`Error: ${node.failure}`] : []), lines.join("\n") || "the marking of now"].join("\n"), 4000) }),
       svg("rect", { x: at.x, y: at.y, width: WIDTH, height: HEIGHT, rx: 7 }));
     all.forEach((line, n) => group.append(svg("text", { x: at.x + 7, y: at.y + 16 + n * 14, text: shorten(line, 25), class: n === 0 && title ? "head" : "" })));
     const go = () => this.visit(i);

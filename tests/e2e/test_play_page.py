@@ -207,6 +207,7 @@ class TestPlaying:
         browser.page.get_by_role("button", name="Run", exact=True).click()
         browser.page.get_by_text("by the compiled simulator").wait_for()
         assert browser.page.locator("#verdict").inner_text() == "dead"
+        assert "Nothing is enabled any more" in browser.page.locator("#said").inner_text()
         browser.page.get_by_role("button", name="Undo").click()
         at(browser, 0)
 
@@ -303,7 +304,10 @@ def test_monitors_are_plotted(chromium: Any, tmp_path: Path) -> None:
         for k in range(1, 6):
             browser.page.keyboard.press("Space")
             at(browser, k)
+        last = browser.page.get_by_role("tab", name="Game")
+        before = last.bounding_box()
         browser.page.get_by_role("tab", name="Monitors").click()
+        assert last.bounding_box() == before  # a tab that is chosen does not push the others
         assert "Size of A" in browser.page.locator(".strip").inner_text()
         count = browser.ask("() => play.page.plots.points[0].length")
         browser.page.keyboard.press("Home")

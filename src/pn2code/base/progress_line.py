@@ -3,12 +3,16 @@
 with Line(plain=True, first="reading the net ...") as line:
     line.stage("comparing the supervisor ...")      # a new part of the work
     line.say("12,000 states")                       # how far it is
+
+Where nothing is said for two seconds, the line says for how long, so that nothing looks frozen.
 """
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
+import threading
 import time
 from collections.abc import Callable
 from types import TracebackType
@@ -16,13 +20,25 @@ from typing import IO, Self
 
 PLAIN_PERIOD_S = 10.0
 """In a file or a pipe a line stays: one in ten seconds shows that the work goes on, and is not too much to read."""
+SILENCE_S = 2.0
+"""After so long without a word the seconds are counted."""
+
+_WRITING = threading.RLock()
+"""Held while a line is written. A process that is forked must not find the stream in the hands of a thread that it
+does not have."""
+os.register_at_fork(
+    before=_WRITING.acquire,
+    after_in_parent=_WRITING.release,
+    after_in_child=_WRITING.release,
+)
 
 
 class Line:
     """A line that is written over again, and is gone at the end.
 
     Where the stream is no terminal, nothing is written; with `plain` whole lines are, without control characters: one
-    for each stage of the work, and every ten seconds how far it is.
+    for each stage of the work, and every ten seconds how far it is. In a terminal, while nothing else is told, the
+    seconds since the last word stand behind it.
 
     Args:
         shown: whether anything is shown at all.
@@ -30,6 +46,7 @@ class Line:
         first: what it says until there is something to tell.
         plain: whether to write lines where the stream is no terminal.
         clock: seconds since any moment.
+        silence: after so many seconds without a word they are counted.
     """
 
     def __init__(
@@ -40,6 +57,7 @@ class Line:
         first: str = "compiling ...",
         plain: bool = False,
         clock: Callable[[], float] = time.monotonic,
+        silence: float = SILENCE_S,
     ) -> None:
         self._stream = stream or sys.stderr
         is_terminal = self._stream.isatty()
@@ -49,9 +67,16 @@ class Line:
         self._told = 0.0
         self._first = first
         self._written = False
+        self._text, self._said = "", 0.0
+        self._silence = silence
+        self._over = threading.Event()
+        self._counting: threading.Thread | None = None
 
     def __enter__(self) -> Self:
         self.stage(self._first)
+        if self._shown:
+            self._counting = threading.Thread(target=self._count, daemon=True)
+            self._counting.start()
         return self
 
     def __exit__(
@@ -60,7 +85,18 @@ class Line:
         value: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._over.set()
+        if self._counting is not None:
+            self._counting.join()
         self.clear()
+
+    def _count(self) -> None:
+        """Shows how long nothing has been said, as long as the line is there."""
+        while not self._over.wait(self._silence / 2):
+            with _WRITING:
+                lasted = self._clock() - self._said
+                if self._written and self._text and lasted >= self._silence:
+                    self._show(f"{self._text.removesuffix(' ...')} ... {lasted:.0f} s")
 
     def stage(self, text: str) -> None:
         """Shows a text that begins a new part of the work: it is a line of its own where lines stay."""
@@ -74,11 +110,15 @@ class Line:
         if self._is_plain and self._clock() - self._told >= PLAIN_PERIOD_S:
             self._write_line(text)
         if self._shown:
-            self._written = True
-            # A text that went on in a second row would leave the first one behind.
-            width = shutil.get_terminal_size().columns - 1
-            self._stream.write(f"\r\x1b[K{text[:width]}")
-            self._stream.flush()
+            with _WRITING:
+                self._text, self._said, self._written = text, self._clock(), True
+                self._show(text)
+
+    def _show(self, text: str) -> None:
+        # A text that went on in a second row would leave the first one behind.
+        width = shutil.get_terminal_size().columns - 1
+        self._stream.write(f"\r\x1b[K{text[:width]}")
+        self._stream.flush()
 
     def keep(self, text: str) -> None:
         """Writes a line that stays, in a terminal, too."""
@@ -95,7 +135,8 @@ class Line:
 
     def clear(self) -> None:
         """Makes room for something that stays."""
-        if self._written:
-            self._stream.write("\r\x1b[K")
-            self._stream.flush()
-            self._written = False
+        with _WRITING:
+            if self._written:
+                self._stream.write("\r\x1b[K")
+                self._stream.flush()
+                self._written = False

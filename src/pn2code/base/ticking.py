@@ -2,15 +2,21 @@
 
 with Ticking(line.say, "verification"):
     process.wait()                          # "verification: 12 s"
+
+with told("reading the net"):               # the same in a line of its own
+    read(path)
 """
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Self
+
+from pn2code.base.progress_line import Line
 
 PERIOD_S = 1.0
 
@@ -50,3 +56,13 @@ class Ticking:
     def _tell(self) -> None:
         while not self._over.wait(self._period):
             self._say(f"{self._what}: {time.monotonic() - self._began:.0f} s")
+
+
+@contextmanager
+def told(what: str) -> Iterator[Ticking]:
+    """What may take long and says nothing by itself: a terminal shows from the second second on how long it takes.
+
+    Nothing else is to be printed meanwhile.
+    """
+    with Line(first="") as line, Ticking(line.say, what) as ticking:
+        yield ticking

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from pn2code.base.kept_answers import KeptAnswers
+from pn2code.base.ticking import told
 from pn2code.cell.channel_table import lines as channel_lines
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
@@ -111,7 +112,7 @@ def check(
     given = {"max-states": max_states, "jobs": jobs}
     _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full, **given)
     d = Diagnostics()
-    with in_time(max_seconds, net, "the net was checked", form):
+    with in_time(max_seconds, net, "the net was checked", form), told("checking the net"):
         checked = examined(
             net,
             parse_values(settings),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.ticking import told
 from pn2code.base.whole_file import whole_file
 from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
 from pn2code.cell.codes import INPUT_MISSING
@@ -117,7 +118,8 @@ def draw(
         stop(d, form)
     path, config = found
     values = {**(config.values if config else {}), **parse_values(settings)}
-    examined = front.examine(path, d, values, drawn=True, compute=compute)
+    with told("reading the net"):
+        examined = front.examine(path, d, values, drawn=True, compute=compute)
     document = examined.document
     if document is None or not document.pages:
         stop(d, form)

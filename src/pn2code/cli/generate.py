@@ -9,6 +9,7 @@ import typer
 
 from pn2code import pipeline
 from pn2code.base.kept_answers import KeptAnswers
+from pn2code.base.ticking import told
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -63,7 +64,8 @@ def generate(
     d = Diagnostics()
     if output is not None and not check:
         _expect_writable(output)
-    with in_time(max_seconds, net, "the programs were generated, so nothing was written", form):
+    late = "the programs were generated, so nothing was written"
+    with in_time(max_seconds, net, late, form), told("reading the net") as ticking:
         result = pipeline.generate(
             net,
             d,
@@ -71,6 +73,7 @@ def generate(
             checked=not unchecked,
             inputs=inputs,
             kept=KeptAnswers.of_user(),
+            stage=ticking.turn_to,
         )
     if result is None:
         stop(d, form)

@@ -9,6 +9,7 @@ from pathlib import Path
 import typer
 
 from pn2code.base.deadline import CommandIsOverError, Deadline
+from pn2code.base.ticking import told
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cli.options import DEFAULT_INT_BITS, Exit, Format, print_diagnostics, stop
@@ -42,13 +43,12 @@ def open_net(
         has_own_marking: it begins with the initial marking of the net, whatever files there are.
     """
     d = Diagnostics()
-    opened = read(path, values, d, int_bits=int_bits)
-    if opened is None:
+    with told("reading the net"):
+        opened = read(path, values, d, int_bits=int_bits)
+        if opened is not None and not has_own_marking:
+            opened = with_inputs(opened, d, inputs)
+    if opened is None or (d.has_errors and not has_own_marking):
         stop(d, form)
-    if not has_own_marking:
-        opened = with_inputs(opened, d, inputs)
-        if d.has_errors:
-            stop(d, form)
     found = [i for i in d.sorted() if i.severity is Severity.WARNING]
     urgent = [i for i in found if i.code.startswith("unsupported-")]
     if warnings is not None:

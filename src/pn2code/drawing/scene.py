@@ -14,6 +14,7 @@ from dataclasses import field
 from pn2code.base.frozen import record
 from pn2code.drawing import text
 from pn2code.drawing.arrange import Arrangement
+from pn2code.drawing.free_spots import spread
 from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
 from pn2code.drawing.positions import (
     PLACE_SIZE,
@@ -78,6 +79,9 @@ class _Builder:
         for t in page.transitions:
             self.transition(t)
         lines = [self.line(*incidence) for incidence in self.incidences()]
+        if self.arranged:
+            boxes = {identity: shape.box for identity, shape in self.nodes.items()}
+            self.labels = spread(self.labels, boxes, lines, [tag.box for tag in self.tags])
         extra = [] if self.arranged else [self.auxiliary(aux) for aux in page.auxiliaries]
         if self.arranged and page.auxiliaries:
             self.notes(page.auxiliaries, lines)

@@ -191,6 +191,7 @@ class Player:
                     "depth": n.depth,
                     "dead": n.is_dead,
                     "open": n.is_open,
+                    "failure": n.failure,
                     "time": time_text(n.marking.time) if self.session.net.timed else "",
                     "changes": self._differences(here, n.marking),
                 }

@@ -73,6 +73,7 @@ class History:
     Attributes:
         forgotten: how many entries at the beginning are no longer there.
         position: how many entries have happened, the forgotten ones included.
+        more: bytes that others keep for each entry, as long as it is remembered.
     """
 
     def __init__(self, changes: Changes, most_bytes: int) -> None:
@@ -82,11 +83,17 @@ class History:
         self._entries: deque[Entry] = deque()
         self.forgotten = 0
         self.position = 0
+        self.more = 0
 
     @property
     def length(self) -> int:
         """How many entries there are, those that can be made again included."""
         return self.forgotten + len(self._entries)
+
+    @property
+    def is_time(self) -> bool:
+        """Whether the last entry moved the clock on, and nothing else."""
+        return self.can_go_back and self.entry(self.position - 1).kind is Kind.TIME
 
     @property
     def can_go_back(self) -> bool:
@@ -120,7 +127,7 @@ class History:
             element, place, chosen: as for `Entry`.
         """
         while self.length > self.position:
-            self._bytes -= weight(self._entries.pop().changes)
+            self._bytes -= self._weight(self._entries.pop())
         (old, old_steps), (new, new_steps) = before, after
         entry = Entry(
             kind,
@@ -133,11 +140,14 @@ class History:
         )
         self._entries.append(entry)
         self.position += 1
-        self._bytes += weight(entry.changes)
+        self._bytes += self._weight(entry)
         while self._bytes > self._most and len(self._entries) > 1:
-            self._bytes -= weight(self._entries.popleft().changes)
+            self._bytes -= self._weight(self._entries.popleft())
             self.forgotten += 1
         return entry
+
+    def _weight(self, entry: Entry) -> int:
+        return weight(entry.changes) + self.more
 
     def chosen_by(self, seed: int) -> bool:
         """Whether everything so far was chosen at random, with this seed, from the beginning on."""

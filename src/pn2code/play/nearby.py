@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 from pn2code.base.frozen import frozen
 from pn2code.play.session import Session
-from pn2code.play.trouble import Trouble, of_game
+from pn2code.play.trouble import Trouble
 from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking
@@ -38,6 +38,8 @@ class Node:
         depth: occurrences from the current one.
         parent: the node before it on the way to it, and what occurs between them; None: it is the current marking.
         is_dead: nothing is ever enabled in it. is_open: it has successors that are not there.
+        failure: what the net does wrong there, such as raising an exception, in words; "": nothing. What would follow
+            is not known then.
     """
 
     marking: Marking
@@ -45,6 +47,7 @@ class Node:
     parent: tuple[int, BindingElement] | None
     is_dead: bool = False
     is_open: bool = False
+    failure: str = ""
 
 
 @frozen
@@ -71,11 +74,7 @@ class Space:
 
 
 def around(session: Session, depth: int, most: int) -> Space:
-    """The markings within so many occurrences, at most so many of them.
-
-    Raises:
-        Trouble: an inscription raises an exception somewhere on the way.
-    """
+    """The markings within so many occurrences, at most so many of them."""
     session.stop.clear()
     game = session.game
     key = Nodes(session.net).key
@@ -84,39 +83,51 @@ def around(session: Session, depth: int, most: int) -> Space:
     arcs: list[Arc] = []
     why = ""
     at = 0
-    try:
-        while at < len(found):
-            node = found[at]
-            elements = _successors(session, node.marking)
-            if session.stop.is_set():
-                why = "stopped"
+    while at < len(found):
+        node = found[at]
+        elements, marking, failure = _successors(session, node.marking)
+        if session.stop.is_set():
+            why = "stopped"
+            break
+        is_open = False
+        for element in elements:
+            if node.depth >= depth or len(arcs) >= MOST_ARCS:
+                is_open, why = True, why or "depth"
                 break
-            is_open = False
-            marking = game.advance_time(node.marking) if elements else node.marking
-            for element in elements:
-                if node.depth >= depth or len(arcs) >= MOST_ARCS:
-                    is_open, why = True, why or "depth"
-                    break
+            try:
                 after, occurred = game.occur(marking, element)
-                k = key(after)
-                if k not in known:
-                    if len(found) >= most:
-                        is_open, why = True, "nodes"
-                        continue
-                    known[k] = len(found)
-                    found.append(Node(after, node.depth + 1, (at, element)))
-                arcs.append(Arc(at, occurred, known[k]))
-            found[at] = Node(node.marking, node.depth, node.parent, not elements, is_open)
-            at += 1
-    except GameError as error:
-        raise of_game(error) from None
+            except GameError as error:
+                failure = failure or _words(error)
+                continue
+            k = key(after)
+            if k not in known:
+                if len(found) >= most:
+                    is_open, why = True, "nodes"
+                    continue
+                known[k] = len(found)
+                found.append(Node(after, node.depth + 1, (at, element)))
+            arcs.append(Arc(at, occurred, known[k]))
+        is_dead = not elements and not failure
+        found[at] = Node(node.marking, node.depth, node.parent, is_dead, is_open, failure)
+        at += 1
     open_ = [Node(n.marking, n.depth, n.parent, False, True) for n in found[at:]]
     return Space((*found[:at], *open_), tuple(arcs), why)
 
 
-def _successors(session: Session, marking: Marking) -> list[BindingElement]:
+def _successors(session: Session, marking: Marking) -> tuple[list[BindingElement], Marking, str]:
+    """What is enabled next, the marking at the time when it is, and what the net does wrong when it is asked."""
     game = session.game
-    return game.enabled_in(game.advance_time(marking))
+    try:
+        later = game.advance_time(marking)
+        elements = game.enabled_in(later)
+    except GameError as error:
+        return [], marking, _words(error)
+    return elements, later if elements else marking, ""
+
+
+def _words(error: GameError) -> str:
+    """What is wrong, and where."""
+    return f"{error.origin.describe()}: {error.message}"
 
 
 def path(space: Space, node: int) -> list[BindingElement]:
@@ -138,7 +149,7 @@ def to_dead(session: Session, most: int, tell: Tell) -> list[BindingElement]:
         tell: how many have been looked at.
 
     Raises:
-        Trouble: there is none, or none was found.
+        Trouble: there is none, or none was found; what follows where the net raises an exception is not known.
     """
     session.stop.clear()
     game = session.game
@@ -146,30 +157,37 @@ def to_dead(session: Session, most: int, tell: Tell) -> list[BindingElement]:
     known = {key(game.marking)}
     queue: list[tuple[Marking, int, BindingElement | None]] = [(game.marking, -1, None)]
     at, told = 0, time.monotonic()
-    try:
-        while at < len(queue):
-            marking = game.advance_time(queue[at][0])
-            elements = game.enabled_in(marking)
-            if not elements:
-                return _way(queue, at)
-            if session.stop.is_set():
-                raise Trouble(f"stopped: no dead marking is among the {at:,} that were looked at")
-            if time.monotonic() - told > _TELL_S:
-                told = time.monotonic()
-                tell(at, 0.0)
-            for element in elements:
+    failed, failure = 0, ""
+    while at < len(queue):
+        elements, marking, wrong = _successors(session, queue[at][0])
+        if not elements and not wrong:
+            return _way(queue, at)
+        if session.stop.is_set():
+            raise Trouble(f"stopped: no dead marking is among the {at:,} that were looked at")
+        if time.monotonic() - told > _TELL_S:
+            told = time.monotonic()
+            tell(at, 0.0)
+        for element in elements:
+            try:
                 after, _ = game.occur(marking, element)
-                k = key(after)
-                if k not in known:
-                    if len(queue) >= most:
-                        raise Trouble(
-                            f"no dead marking is among the nearest {at:,}; ask for `deadlock free` to look at all"
-                        )
-                    known.add(k)
-                    queue.append((after, at, element))
-            at += 1
-    except GameError as error:
-        raise of_game(error) from None
+            except GameError as error:
+                wrong = _words(error)
+                continue
+            k = key(after)
+            if k not in known:
+                if len(queue) >= most:
+                    raise Trouble(
+                        f"no dead marking is among the nearest {at:,}; ask for `deadlock free` to look at all"
+                    )
+                known.add(k)
+                queue.append((after, at, element))
+        failed, failure = failed + bool(wrong), failure or wrong
+        at += 1
+    if failed:
+        raise Trouble(
+            f"no dead marking was found in all {len(queue):,} markings, but in {failed:,} of them the net cannot go on "
+            f"somewhere: {failure}"
+        )
     raise Trouble(f"no dead marking can be reached: all {len(queue):,} markings were looked at")
 
 

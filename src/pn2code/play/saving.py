@@ -7,7 +7,9 @@ load(session, path)                  # sentences about what was loaded
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -79,8 +81,12 @@ def _why(session: Session) -> str:
     game = session.game
     if game.steps == 0:
         return "steps"
+    now = game.marking.time
     try:
-        return "steps" if game.enabled_transitions(game.advance_time(game.marking)) else "finished"
+        later = game.advance_time(game.marking)
+        if not game.enabled_transitions(later):
+            return "finished"
+        return "until" if later.time > now and session.history.is_time else "steps"
     except GameError:
         return "error"
 
@@ -90,12 +96,34 @@ class _Enough(Exception):  # noqa: N818
 
 
 class _Loading:
-    """Takes over the steps of a trace while they are repeated."""
+    """Takes over the steps of a trace while they are repeated.
+
+    Attributes:
+        game: that of the trace; None before its first line.
+        is_known: whether the times of the trace are those of the token game.
+    """
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self._before: tuple[Marking, int] | None = None
+        self._last = ""
         self.game: Game | None = None
+        self.is_known = False
+
+    def lines(self, lines: Iterable[str]) -> Iterator[str]:
+        """The lines; the last one is noted."""
+        for line in lines:
+            self._last = line if line.strip() else self._last
+            yield line
+
+    def end(self) -> None:
+        """All steps are repeated: the clock goes on to the time of the last line, where nothing occurs before."""
+        last = json.loads(self._last)
+        time = last.get("t") if last.get("event") == "end" and self.is_known else None
+        now = self._session.game.marking.time
+        if isinstance(time, int | float) and time > now and self._session.net.timed:
+            with suppress(Trouble):
+                self._session.advance(time if self._session.net.real_time else math.floor(time))
 
     def watch(self, game: Game, occurred: BindingElement | None, line: Mapping[str, Any]) -> None:
         """The game has come so far."""
@@ -104,6 +132,7 @@ class _Loading:
             self.game = game
             initial = line.get("initial")
             known = str(line.get("by", "")) in (*SIMULATORS, VERIFY, "")
+            self.is_known = known
             obstacle = "" if known else "its times are those of a run of a cell"
             session.adopt(game, initial if isinstance(initial, dict) else {}, obstacle)
         else:
@@ -130,7 +159,7 @@ def load(session: Session, path: Path) -> str:
     with path.open(encoding="utf-8", errors="replace") as lines:
         try:
             result = replay_lines(
-                lines,
+                loading.lines(lines),
                 session.net,
                 session.opened.storage,
                 files=Files(None),
@@ -143,6 +172,8 @@ def load(session: Session, path: Path) -> str:
     if loading.game is None:
         raise Trouble(f"this is no trace of the net: {result.why if result else 'it is empty'}")
     count = session.history.position
+    if result is not None and result.ok and result.ended is not None:
+        loading.end()
     if is_cut:
         return f"{count:,} steps were loaded, and no more"
     if result is not None and not result.ok:

@@ -122,9 +122,11 @@ class Session:
         self._runs = [(0, initial, obstacle)]
         program = self.loaded.monitors
         self.watching: Watching | None = None
+        self.history.more = 0
         if program is not None:
             try:
                 self.watching = Watching(program, game)
+                self.history.more = self.watching.weight
             except GameError as error:
                 self.notices.append(f"the monitors do not work: {error.message}")
 
@@ -263,6 +265,10 @@ class Session:
         self.tape.add(number, lines)
         after = game.marking, game.steps
         self.history.add(kind, before, after, element=element, place=place, chosen=chosen)
+        if self.watching is not None:
+            missed = after[1] - before[1] if kind is Kind.LEAP else 0
+            self.watching.goes_on(number, missed)
+            self.watching.forget(self.history.forgotten)
 
     def made(self, before: tuple[Marking, int], occurred: BindingElement) -> None:
         """The game has made a step at somebody else's order."""
@@ -280,8 +286,6 @@ class Session:
         before = game.marking, game.steps
         game.marking, game.steps = replace(marking, references=game.marking.references), steps
         self._record(Kind.LEAP, before, chosen=self.seed, lines=lines)
-        if self.watching is not None:
-            self.watching.missed += steps - before[1]
 
     def forbid_saving(self, why: str) -> None:
         """From here on the run cannot be saved."""

@@ -2,7 +2,7 @@
 
 value_text(list_of(INT), (1, 2), program)            # [1,2]
 
-Values are written as in markings: `~2`, `"a"`, `{b=1,a=red}`.
+Values are written as in markings: `~2`, `"a"`, `{b=1,a=red}`; texts with the escapes of literals, `"a\\n"`.
 """
 
 from __future__ import annotations
@@ -12,10 +12,12 @@ from typing import Any
 
 from pn2code.ml.core.terms import DatatypeDec
 from pn2code.ml.core.types import TCon, TFun, TRecord, TVar, Type
+from pn2code.semantics.library.builtins_text import escaped
 from pn2code.semantics.values.data import Array, Data, Ref, Timed, int_text, real_text
 
 _INTS = ("int", "IntInf.int")
 _TEXTS = {"string": '"{}"', "char": '#"{}"'}
+"""Texts, with escapes: the page shows what is a line break, a quote or a backslash in them."""
 MOST = 20_000
 """Parts of a value that are written."""
 
@@ -57,7 +59,9 @@ class _Writer:
             case float():
                 return real_text(value)
             case str():
-                return _TEXTS.get(name, "{}").format(value)
+                return (
+                    _TEXTS[name].format("".join(map(_escaped, value))) if name in _TEXTS else value
+                )
             case Timed(value=inner, stamp=stamp):
                 time = real_text(stamp) if isinstance(stamp, float) else int_text(stamp)
                 return f"{self.text(arguments[0], inner)}@{time}" if arguments else "…"
@@ -66,7 +70,8 @@ class _Writer:
             case Array(items=items):
                 return f"[|{','.join(self._inside(arguments, x) for x in items)}|]"
             case tuple() if arguments:
-                return f"[{','.join(self.text(arguments[0], x) for x in value)}]"
+                opening = "#[" if name == "vector" else "["
+                return f"{opening}{','.join(self.text(arguments[0], x) for x in value)}]"
             case Data():
                 return self._data(name, arguments, value)
             case _:
@@ -89,6 +94,11 @@ class _Writer:
             if inner.startswith(("(", "{", "["))
             else f"{value.name}({inner})"
         )
+
+
+def _escaped(c: str) -> str:
+    """A character as in a literal, but letters beyond ASCII as they are."""
+    return c if c.isprintable() and ord(c) > 127 else escaped(c)
 
 
 def _with(t: Type, arguments: tuple[Type, ...]) -> Type:

@@ -6,6 +6,7 @@ Statistics are put back with the steps. What functions of monitors do besides (r
 from __future__ import annotations
 
 import copy
+from collections.abc import Iterable
 from typing import Any
 
 from pn2code.diagnostics import Diagnostics
@@ -19,7 +20,10 @@ from pn2code.semantics.game.token_game import Game
 MOST_POINTS = 100_000
 """Of a plot."""
 
-_Kept = tuple[tuple[int, Statistics], ...]
+_Kept = tuple[tuple[int, Statistics, Statistics], ...]
+"""Of a step: the number of each monitor that has collected something, its statistics before and after."""
+WEIGHT = 600
+"""Bytes of what is kept of a monitor for a step, about."""
 
 
 class Watching:
@@ -30,7 +34,7 @@ class Watching:
         game: what they watch.
 
     Attributes:
-        missed: how many steps they have not seen, because the compiled simulator made them.
+        points: of each monitor's plot: how many entries there were, the model time, the value.
 
     Raises:
         GameError: a function of a monitor raises an exception.
@@ -40,11 +44,25 @@ class Watching:
         self._game = game
         self._d = Diagnostics()
         self._watch = Watch(program, game, self._d)
-        self._steps: dict[int, tuple[_Kept, _Kept]] = {}
+        self._steps: dict[int, _Kept] = {}
+        """By entry of the history, ascending: those that can be taken back or made again."""
+        self._leaps: dict[int, int] = {}
+        self._position = 0
         self.points: list[list[tuple[int, float, Number]]] = [[] for _ in self._watch.monitors]
-        self.missed = 0
         self._watch.start()
+        self._now = {i: copy.copy(s) for i, s in self._statistics()}
+        """What each has collected, as it is kept for steps."""
         self._note(0)
+
+    @property
+    def weight(self) -> int:
+        """Bytes that are kept for a step, at most."""
+        return WEIGHT * len(self._now)
+
+    @property
+    def missed(self) -> int:
+        """How many steps they have not seen, because the compiled simulator made them."""
+        return sum(n for number, n in self._leaps.items() if number < self._position)
 
     def occurred(self, number: int, element: BindingElement) -> Breakpoint | None:
         """After a step, which is the entry of this number; the breakpoint that it has reached.
@@ -52,16 +70,34 @@ class Watching:
         Raises:
             GameError: a function of a monitor raises an exception.
         """
-        before = {i: copy.copy(s) for i, s in self._statistics()}
         try:
             return self._watch.occurred(element)
         finally:
-            own = [i for i, s in self._statistics() if s.count != before[i].count]
+            own = [(i, s) for i, s in self._statistics() if s.count != self._now[i].count]
             if own:
-                after = {i: copy.copy(s) for i, s in self._statistics()}
-                kept = tuple((i, before[i]) for i in own), tuple((i, after[i]) for i in own)
+                kept = tuple((i, self._now[i], copy.copy(s)) for i, s in own)
                 self._steps[number] = kept
-                self._note(number + 1, own)
+                self._now.update({i: after for i, _, after in kept})
+                self._note(number + 1, [i for i, _ in own])
+
+    def goes_on(self, number: int, missed: int = 0) -> None:
+        """There is a new entry, of this number: what it and later ones were on another way is forgotten.
+
+        Args:
+            number: of the entry.
+            missed: how many steps it is that nobody watches.
+        """
+        for kept in (self._steps, self._leaps):
+            while kept and next(reversed(kept)) >= number:
+                kept.popitem()
+        if missed:
+            self._leaps[number] = missed
+        self._position = number + 1
+
+    def forget(self, before: int) -> None:
+        """The entries before this number are not taken back any more."""
+        while self._steps and (first := next(iter(self._steps))) < before:
+            del self._steps[first]
 
     def time_grew(self) -> Breakpoint | None:
         """After the clock was moved on."""
@@ -69,24 +105,26 @@ class Watching:
 
     def back(self, number: int) -> None:
         """The entry of this number was taken back."""
-        self._put(number, 0)
-        for i, points in enumerate(self.points):
+        self._position = number
+        self._put((i, before) for i, before, _ in self._steps.get(number, ()))
+        for points in self.points:
             while points and points[-1][0] > number:
-                self.points[i].pop()
+                points.pop()
 
     def on(self, number: int) -> None:
         """The entry of this number was made again."""
-        own = self._put(number, 1)
+        self._position = number + 1
+        own = self._put((i, after) for i, _, after in self._steps.get(number, ()))
         if own:
             self._note(number + 1, own)
 
-    def _put(self, number: int, which: int) -> list[int]:
-        kept = self._steps.get(number)
-        if kept is None:
-            return []
-        for i, statistics in kept[which]:
+    def _put(self, wanted: Iterable[tuple[int, Statistics]]) -> list[int]:
+        """Lets these monitors have these statistics; the numbers of the monitors."""
+        put = dict(wanted)
+        self._now.update(put)
+        for i, statistics in put.items():
             self._watch.monitors[i].statistics = copy.copy(statistics)
-        return [i for i, _ in kept[which]]
+        return list(put)
 
     def _statistics(self) -> list[tuple[int, Statistics]]:
         pairs = enumerate(m.statistics for m in self._watch.monitors)

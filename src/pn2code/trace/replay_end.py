@@ -22,7 +22,8 @@ from pn2code.trace.parties import EVIDENCE, RUN, VERIFY, Parties
 
 FINISHED = "finished"
 ERROR = "error"
-GOES_ON = ("steps", "until")
+UNTIL = "until"
+GOES_ON = ("steps", UNTIL)
 """The run was to be no longer, though something was enabled, or will be at a later time."""
 RUN_ENDS = (FINISHED, "stopped", "failed")
 """What may become of a whole cell (`run.record`)."""
@@ -78,7 +79,9 @@ def end_problem(game: Game, line: Mapping[str, Any], ending: Ending) -> str | No
 
 
 def _clock_problem(game: Game, line: Mapping[str, Any]) -> str | None:
-    """A simulator's clock stands where its last step was, or where the next one is possible."""
+    """A simulator's clock stands where its last step was, or where the next one is possible; between them where the
+    time was limited.
+    """
     t, shown = line.get("t"), game.marking.time
     if not is_number(t) or t == shown:
         return None
@@ -86,7 +89,8 @@ def _clock_problem(game: Game, line: Mapping[str, Any]) -> str | None:
         later = game.advance_time(game.marking).time
     except GameError:
         return None
-    return None if t == later else f"it says time {t}, but the clock shows {shown}"
+    is_between = line.get("why") == UNTIL and shown < t < later
+    return None if t == later or is_between else f"it says time {t}, but the clock shows {shown}"
 
 
 def _simulated(game: Game, why: str, ending: Ending) -> str | None:

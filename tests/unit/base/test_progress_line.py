@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import threading
+import time
 
 import pytest
 from rich.console import Console
@@ -47,6 +49,32 @@ def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None
         line.stage("comparing")
         line.say("5 states")
     assert stream.getvalue() == "reading\n3 states\ncomparing\n"
+
+
+class Telling(Terminal):
+    """A terminal that says when something was written that somebody waits for."""
+
+    def __init__(self, awaited: str) -> None:
+        super().__init__()
+        self.seen = threading.Event()
+        self._awaited = awaited
+
+    def write(self, text: str) -> int:
+        if self._awaited in text:
+            self.seen.set()
+        return super().write(text)
+
+
+def test_what_says_nothing_does_not_look_frozen() -> None:
+    now, stream = 100.0, Telling("sweeping moves ... 7 s")
+    with Line(stream=stream, first="reading ...", clock=lambda: now, silence=0.01) as line:
+        line.stage("sweeping moves ...")
+        now += 7.0
+        assert stream.seen.wait(60)
+        line.keep("something that stays")
+        stream.truncate(0)
+        time.sleep(0.05)
+        assert "sweeping" not in stream.getvalue()
 
 
 def test_lines_of_a_pipe_are_hidden_like_those_of_a_terminal() -> None:

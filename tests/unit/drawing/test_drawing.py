@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html.parser
+import itertools
 import re
 from pathlib import Path
 
@@ -474,6 +475,41 @@ def test_nodes_in_one_point_are_arranged() -> None:
         for b in nodes[i + 1 :]:
             assert not a.box.overlaps(b.box)
     check_page(found, found.pages[0])
+
+
+def test_texts_of_an_arranged_page_lie_on_nothing() -> None:
+    net = """
+    net Codes
+      standard
+      var n, m, r : INT;
+      page Top
+        place A : INT = 1`1
+        place B : INT
+        place C : INT
+        place D : INT
+        trans Work guard [n > 0, n < 99] code input (n); output (m, r); action (n + discrete (1, 10), n * 200 + 1)
+          in A : n
+          out B : m
+          out D : r
+        trans Other code input (n); action ignore (INT.mkstr n)
+          in B : n
+          out C : if n > 3 then 1`n else empty
+          out A : n
+        trans Third
+          in C : n
+          in D : m
+          out A : n + m
+    """
+    moved = re.sub(rb'<posattr x="[^"]*" y="[^"]*"', b'<posattr x="0" y="0"', netbuilder.cpn(net))
+    found = read_data(moved, "test.cpn", Diagnostics())
+    assert found is not None
+    scene = build(found, found.pages[0])
+    boxes = [label.box for label in scene.labels] + [shape.box for shape in scene.shapes]
+    assert len(scene.labels) == 17
+    assert not [(a, b) for a, b in itertools.combinations(boxes, 2) if a.overlaps(b)]
+    for code in (label.box for label in scene.labels if label.kind in ("code", "guard")):
+        points = [geometry.along(line.points, k / 50) for line in scene.lines for k in range(51)]
+        assert not any(code.holds(p) for p in points)
 
 
 def test_the_layout_is_in_layers() -> None:

@@ -62,3 +62,40 @@ def test_no_dead_marking_is_told(tmp_path: Path) -> None:
     with pytest.raises(Trouble, match="among the nearest"):
         nearby.to_dead(game, 2, lambda n, t: None)
     assert game.history.length == 0 and marking(game)["Top.A"] == "1`1++\n1`2"
+
+
+RAISES = """
+net Raises
+  standard
+  var n : INT;
+  page Top
+    place A : INT = 1`0
+    place B : INT
+    trans Up guard [n < 4]
+      in A : n
+      out A : n + 1
+    trans Bad
+      in A : n
+      out B : 10 div (3 - n)
+"""
+
+
+def test_an_exception_somewhere_does_not_hide_the_rest(tmp_path: Path) -> None:
+    game = session(tmp_path, RAISES)
+    found = nearby.around(game, 9, 400)
+    failed = [n for n in found.nodes if n.failure]
+    assert len(failed) == 1 and "Div" in failed[0].failure and failed[0].depth == 3
+    assert len(found.nodes) == 9 and sum(n.is_dead for n in found.nodes) == 4
+    assert not failed[0].is_dead
+
+
+def test_a_marking_in_which_the_net_cannot_go_on_is_not_called_dead(tmp_path: Path) -> None:
+    game = session(
+        tmp_path,
+        RAISES.replace("10 div (3 - n)", "1")
+        .replace("[n < 4]", "[10 div (3 - n) > 0]")
+        .replace("in A : n\n      out B", "in A : 9\n      out B"),
+    )
+    with pytest.raises(Trouble, match=r"all 4 markings, but in 1 of them .*Div"):
+        nearby.to_dead(game, 100, lambda n, t: None)
+    assert [n.is_dead for n in nearby.around(game, 9, 400).nodes] == [False] * 4

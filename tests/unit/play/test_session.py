@@ -235,6 +235,10 @@ class TestExpressions:
             ('(~3, "a", [SOME 1, NONE], {b = 2.5, a = true})',
              "int * string * int option list * {a: bool, b: real}",
              '(~3,"a",[SOME(1),NONE],{a=true,b=2.5})'),
+            (r'("a\"b\\\nü", [#"\t", #"x"])', "string * char list", r'("a\"b\\\nü",[#"\t",#"x"])'),
+            ("Vector.fromList [1, 2]", "int vector", "#[1,2]"),
+            ("fn f => fn x => f (f x)", "('a -> 'a) -> 'a -> 'a", "fn"),
+            ("(NONE, [], fn x => x = x)", "'a option * 'b list * (''c -> bool)", "(NONE,[],fn)"),
             ("fn x => x + 1", "int -> int", "fn"),
             ("()", "unit", "()"),
             ("step ()", "IntInf.int", "2"),
@@ -298,6 +302,24 @@ class TestTraces:
         assert other.game.marking == last and other.history.position == 9
         other.go(0)
         assert other.game.marking == Game(other.net).marking
+
+    def test_the_clock_is_that_of_the_end(self, tmp_path: Path) -> None:
+        game = session(tmp_path, TIMED)
+        game.step()
+        game.step()
+        game.advance(3)
+        file = tmp_path / "run.trace.jsonl"
+        saving.save(game, file)
+        (tmp_path / "b").mkdir()
+        other = of(tmp_path / "net.cpn", tmp_path / "b")
+        assert replay(file, game.net).ok
+        assert saving.load(other, file) == "2 steps were loaded"
+        assert other.game.marking == game.game.marking and other.game.marking.time == 3
+        # What is enabled before does occur before.
+        text = file.read_text().splitlines()
+        file.write_text("\n".join([*text[:2], text[-1]]) + "\n")
+        saving.load(other, file)
+        assert other.game.marking.time == 0
 
     def test_what_is_not_possible_ends_it(self, tmp_path: Path) -> None:
         game = session(tmp_path, TIMED)

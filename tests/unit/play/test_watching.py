@@ -56,6 +56,46 @@ def test_another_way_has_other_values(tmp_path: Path) -> None:
     assert game.watching.rows()[0]["count"] == 2
 
 
+def test_what_is_made_again_is_what_was_made(tmp_path: Path) -> None:
+    game = session(tmp_path, with_monitors(FLAT, COUNT))
+    assert game.watching is not None
+    go, back = (
+        next(t.index for t in game.net.transitions if t.short == name) for name in ("Go", "Back")
+    )
+    game.fire_any(go)
+    game.fire_any(go)
+    game.undo()
+    game.fire_any(back)
+    game.undo()
+    game.redo()
+    assert game.watching.rows()[0]["count"] == 1
+
+
+def test_what_is_forgotten_is_not_kept(tmp_path: Path) -> None:
+    game = session(tmp_path, with_monitors(FLAT, COUNT), most_bytes=20_000)
+    assert game.watching is not None
+    for _ in range(50):
+        game.step()
+    assert game.history.forgotten and min(game.watching._steps) >= game.history.forgotten
+    game.go(game.history.forgotten)
+    seen = game.watching.rows()
+    game.go(50)
+    game.go(game.history.forgotten)
+    assert game.watching.rows() == seen
+
+
+def test_steps_that_were_not_seen_go_back_too(tmp_path: Path) -> None:
+    game = session(tmp_path, with_monitors(FLAT, COUNT))
+    assert game.watching is not None
+    game.step()
+    game.leapt(game.game.marking, 5000, [])
+    assert game.watching.missed == 4999
+    game.undo()
+    assert game.watching.missed == 0
+    game.redo()
+    assert game.watching.missed == 4999
+
+
 def test_a_breakpoint_of_the_net_ends_a_run(tmp_path: Path) -> None:
     stop = Spec(
         "A is empty", "Place contents break point", ["Top.A"], options={"if is empty": "true"}

@@ -436,6 +436,28 @@ def test_the_end_has_the_time_of_the_clock(timed: FlatNet) -> None:
     assert "but the clock shows" in refused(timed, [*written[:-1], later]).why
 
 
+def test_a_limited_time_ends_between_two_steps() -> None:
+    net = flat("""
+    net Waits
+      standard
+      colset T = int timed;
+      page Top
+        place A : T = 1`1
+        trans Go
+          in A : 1
+          out A : 1 @+ 5
+    """)
+    written = list(trace(Game(net), steps=1))[:2]
+
+    def end(t: int, why: str = "until") -> str:
+        return json.dumps({"t": t, "event": "end", "why": why})
+
+    for time in (0, 3, 5):
+        assert replay_lines([*written, end(time)], net).ok, time
+    for last in (end(6), end(3, "steps")):
+        assert "but the clock shows 0" in refused(net, [*written, last]).why
+
+
 def test_an_exception_of_the_next_step_is_that_of_its_number() -> None:
     net = flat("""
     net Third

@@ -43,6 +43,7 @@ from pn2code.ml.typing.inference import (
     I_INT,
     I_UNIT,
     ICon,
+    Ty,
     from_type,
     i_list,
     prune,
@@ -376,7 +377,14 @@ class Inscriptions:
         with self._scope(scope), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.infer(exp)
-            return self._finish(before, lambda: (draft.build(), to_type(draft.type)))
+            return self._finish(before, lambda: (draft.build(), self._most_general(draft.type)))
+
+    def _most_general(self, t: Ty) -> Type:
+        """A type with variables for what nothing decides; nobody goes on with it."""
+        self._ctx.unifier.level = 0
+        for index, quant in enumerate(self._ctx.unifier.generalise([t])):
+            quant.index = index
+        return to_type(t)
 
     # --- delays and priorities
 
