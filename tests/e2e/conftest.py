@@ -13,6 +13,7 @@ from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Cached
 from helpers.objects import Objects
 from helpers.session import common, once
+from helpers.thorough import THOROUGH
 from helpers.tiny_compiler import QuickMake
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
@@ -104,6 +105,8 @@ def riveting_program(
             write(folder, generated.files)
             for target in ("supervisor", "supervisor.traced"):
                 assert build.build(folder, generated.files, d, target=target), render.report(d)
+                if not THOROUGH:
+                    patch.setenv("CFLAGS", "-O0")  # what is deployed has been built
 
     return once(tmp_path_factory, "riveting-program", make)
 

@@ -24,7 +24,19 @@ from pn2code.toolchain import build
 ROOT = Path(__file__).resolve().parents[2]
 BLOCKS = [block for path in documents(ROOT) for block in blocks(path, ROOT)]
 
-CELLS = "test_example_cells does the same in each run of the tests"
+CELLS = "test_example_cells does the same"
+LIKE_SORTING = "the same with the sorting cell is typed in each run of the tests"
+OTHERS = (
+    "assembly",
+    "handover",
+    "machining",
+    "palletiser",
+    "shared-zone",
+    "tending",
+    "timed",
+    "welding",
+)
+"""Examples whose READMEs begin like that of the sorting cell."""
 LONG = {
     "./dev cell": "the riveting cell in PyBullet with all of its pictures: 20 seconds",
     "pn2code run examples/riveting --layout paper": "the same in another layout",
@@ -103,6 +115,8 @@ LONG = {
     "pn2code generate examples/timed -o out && make -C out": CELLS,
     "pn2code verify philosophers.cpn --set n=15 --plot plot.svg": "a large state space",
     "pn2code simulate mynet.cpn --steps 1000000 --trace run.trace.jsonl": "a long trace",
+    **{f"pn2code check examples/{name}": CELLS for name in OTHERS},
+    **{f"pn2code simulate examples/{name} --seed 5": LIKE_SORTING for name in OTHERS},
 }
 """Too long for each run of the tests; `make thorough` types them, too. With the reason."""
 
@@ -256,7 +270,10 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.cc
 @pytest.mark.usefixtures("quick")
-@pytest.mark.parametrize("document", sorted({b.document for b in BLOCKS}))
+@pytest.mark.parametrize(
+    "document",
+    sorted({b.document for b in BLOCKS if THOROUGH or set(b.lines) - set(LONG) - set(NEVER)}),
+)
 def test_as_printed(
     document: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -107,6 +107,8 @@ EXAMPLES = {
 
 AGAIN = ("sorting", "palletiser", "handover")
 """Generated twice, and their runs forged, in each run of the tests; all of them are in `make thorough`."""
+RUN = (*AGAIN, "tending", "timed")
+"""Run in each run of the tests; all of them are in `make thorough`."""
 FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
 
@@ -206,6 +208,7 @@ def _verified(*arguments: str | Path) -> dict[str, Any]:
 
 @pytest.mark.cc
 @pytest.mark.usefixtures("generated_once")
+@pytest.mark.parametrize("example", [*EXAMPLES] if THOROUGH else RUN, indirect=True)
 def test_run(
     example: tuple[Path, Expected], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
