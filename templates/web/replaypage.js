@@ -28,7 +28,7 @@ export class ReplayPage {
     this.run = data.runs[0];
     this.course = new Course(this.run);
     this.clock = this.makeClock();
-    this.written = new Moments(this.run, this.course);
+    this.written = new Moments(this.run, this.clock);
     this.transition = -1;
     this.place = -1;
     document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
@@ -50,6 +50,7 @@ export class ReplayPage {
     this.search = new Search(byId("search"), this.clock, actions);
     this.transport = new Transport(byId("transport"), this.clock, {
       message: (by) => this.toMessage(by), mark: (by) => this.toMark(by),
+      moment: (text) => this.written.read(text),
       hasMessages: Boolean(this.messages), hasMarks: this.run.live || this.moments().length > 0,
     });
     this.clock.listen(() => this.update());
@@ -222,10 +223,13 @@ export class ReplayPage {
     this.messages?.reveal(p);
   }
 
+  /** To the step or the moment that the address names; what is neither leads nowhere. */
   fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
-    if (words.has("step")) this.clock.step(Number(words.get("step")) || 0);
-    else if (words.has("t")) this.clock.seek(Number(words.get("t")));
+    const step = Number(words.get("step") || NaN);
+    const t = this.written.read(words.get("t") ?? "");
+    if (Number.isInteger(step)) this.clock.step(step);
+    else if (Number.isFinite(t)) this.clock.seek(t);
     else return false;
     return true;
   }

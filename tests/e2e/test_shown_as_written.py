@@ -1,4 +1,4 @@
-"""What the replay page shows is what it says: the end that is typed as it is shown, the name of each curve."""
+"""What the replay page shows is what it says: moments that are typed as they are shown, the name of each curve."""
 
 from __future__ import annotations
 
@@ -40,6 +40,50 @@ def test_the_end_typed_as_it_is_shown_is_the_end(
         field.fill("29.99")
         field.press("Enter")
         assert browser.ask("() => replay.page.clock.t") == 29.99
+
+
+def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
+    tmp_path: Path, chromium: Any
+) -> None:
+    """Steps have more digits than the page shows: whoever types 0.33 means the step at 0.3333, not before it."""
+    run = with_arm(described(tmp_path), 1 / 3)
+    run["happenings"]["events"] = [{"t": 7.1239, "kind": "warning", "party": 1, "text": "near"}]
+    file = tmp_path / "replay.html"
+    file.write_text(page(run), encoding="utf-8")
+    steps = {f"{k / 3:.2f}": k for k in range(1, 31)}
+    moments = {"3.333": 10 * (1 / 3), "3.3330": 3.333, "7.12": 7.1239, "3,5 s": 3.5}
+    nothing = ["abc", "", "1:05", "Infinity", "3,5,1"]
+    addresses = {"#t=6,5": 19, "#t=4.67": 14, "#t=": 14, "#t=x": 14, "#step=": 14, "#step=x": 14}
+    with opened(chromium) as browser:
+        browser.open(file)
+        found = browser.ask(
+            """([steps, moments, nothing, addresses]) => {
+              const { page } = replay, { clock, written } = page, { time } = page.transport;
+              const typed = (text) => (time.value = text, time.dispatchEvent(new Event("change")), clock);
+              const named = (to) => (history.replaceState(null, "", to), page.fromAddress(), clock.k);
+              const back = (t) => {
+                clock.seek(t);
+                const again = written.read(written.write(t));
+                return clock.course.stepAt(again) === clock.k && Math.abs(again - t) < 6e-4;
+              };
+              return {
+                steps: steps.map((text) => typed(text).k),
+                moments: moments.map((text) => typed(text).t),
+                nothing: nothing.map((text) => [typed(text).t, time.value]),
+                addresses: addresses.map(named),
+                back: [1, 2, 29, 30].flatMap((k) => [0, 1e-3, 1e-4].map((less) => back(k / 3 - less))),
+              };
+            }""",
+            [list(steps), list(moments), nothing, list(addresses)],
+        )
+        assert browser.errors == []
+    assert found == {
+        "steps": list(steps.values()),
+        "moments": list(moments.values()),
+        "nothing": [[3.5, "3.50"]] * len(nothing),
+        "addresses": list(addresses.values()),
+        "back": [True] * 12,
+    }
 
 
 @pytest.mark.parametrize("count", [4, 5, 11])
