@@ -17,6 +17,12 @@ import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
 import { Watch } from "./watch.js";
 
+/**
+ * Whether a run that has come to its end has done so where that means failure.
+ * @param {any} verdict
+ */
+export const hasFailed = (verdict) => Boolean(verdict.failed?.length);
+
 /** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
 const PANES_MS = 200;
 const PICTURES = 3;
@@ -70,8 +76,8 @@ export class ReplayPage {
     const words = /** @type {Record<string, string>} */ ({ steps: "more would be possible", cut: "shown in part" });
     const word = course.refused ? "not possible" : words[verdict.word] ?? verdict.word;
     if (word) {
-      const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused;
-      // A run that has finished may have done so in a place that means failure: the place is named as well.
+      // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
+      const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused && !hasFailed(verdict);
       const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
       const text = places ? `${word} in ${places}` : word;
       byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));

@@ -47,6 +47,12 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
 ) -> None:
     """Steps have more digits than the page shows: whoever types 0.33 means the step at 0.3333, not before it."""
     run = with_arm(described(tmp_path), 1 / 3)
+    run["verdict"] = {
+        "word": "finished",
+        "reason": "",
+        "final": ["Top.Jammed"],
+        "failed": ["Top.Jammed"],
+    }
     run["happenings"]["events"] = [{"t": 7.1239, "kind": "warning", "party": 1, "text": "near"}]
     file = tmp_path / "replay.html"
     file.write_text(page(run), encoding="utf-8")
@@ -76,6 +82,8 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
             }""",
             [list(steps), list(moments), nothing, list(addresses)],
         )
+        chip = browser.page.locator("#verdict .chip.bad")
+        assert chip.inner_text() == "finished in Jammed"
         assert browser.errors == []
     assert found == {
         "steps": list(steps.values()),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +43,7 @@ def describe(
     *,
     most: int = MOST_STEPS,
     files: Files | None = None,
+    failed: Container[str] = (),
     progress: Progress = _nothing,
 ) -> Json:
     """The description of a trace file.
@@ -53,6 +54,7 @@ def describe(
         storage: as for `Game`.
         most: how many steps are shown; the rest is left out, and the page says so.
         files: what the net can do with files.
+        failed: final places that mean that the cell has failed.
         progress: how far it is.
 
     Raises:
@@ -76,6 +78,7 @@ def describe(
             "word": "cut" if reader.is_cut else _word(end),
             "reason": str(end.get("reason", "")),
             "final": [str(p) for p in end.get("final", ())],
+            "failed": [str(p) for p in end.get("final", ()) if p in failed],
         },
         "facts": [["trace", trace.name], ["by", by], ["steps", f"{course.steps:,}"]],
         "net": nets.describe(document, net),
