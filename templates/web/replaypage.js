@@ -103,7 +103,7 @@ export class ReplayPage {
     this.tabs = tabs;
     this.firstPanel(add);
     if (this.run.happenings?.messages.length || this.run.live) {
-      this.messages = new Messages(add("Messages"), this.run, this.clock, (m) => this.onMessage(m));
+      this.messages = new Messages(add("Messages"), this.run, this.clock, (m) => this.selectPlace(m.place));
     }
     this.steps = new Steps(add("Steps"), this.clock);
     if (this.run.programs) this.code = new Code(add("Code"), this.run, this.clock, actions.onTransition);
@@ -172,14 +172,14 @@ export class ReplayPage {
 
   /** @param {number} by */
   toMessage(by) {
-    const t = this.messages?.next(by) ?? NaN;
-    if (Number.isFinite(t)) this.clock.seek(t);
+    this.messages?.step(by);
   }
 
   /** @param {any} bar */
   onBar(bar) {
     if (this.clock.t < bar.start || this.clock.t >= bar.end) this.clock.seek(bar.start);
-    if (bar.transition >= 0) this.selectTransition(bar.transition, false);
+    const transition = bar.kind === "activity" ? this.timeline.firstOf(bar) : bar.transition;
+    if (transition >= 0) this.selectTransition(transition, false);
   }
 
   /**
@@ -194,12 +194,6 @@ export class ReplayPage {
     const begun = bars.filter((/** @type {any} */ b) => b.party === party && b.start <= t);
     const bar = begun.find((/** @type {any} */ b) => t < b.end) ?? begun.pop();
     if (bar?.transition >= 0) this.selectTransition(bar.transition, false);
-  }
-
-  /** @param {any} message */
-  onMessage(message) {
-    this.clock.seek(message.t);
-    this.selectPlace(message.place);
   }
 
   /**
