@@ -5,7 +5,7 @@ import { Beside } from "./beside.js";
 import { CellView } from "./cellview.js";
 import { Clock } from "./clock.js";
 import { Code } from "./code.js";
-import { Course } from "./course.js";
+import { Course, loopOf } from "./course.js";
 import { byId, el } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
@@ -16,6 +16,17 @@ import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
 import { Watch } from "./watch.js";
+
+/** How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
+const GOOD = new Set(["finished", "steps", "cut"]);
+/** @type {Record<string, Record<string, string>>} */
+const WORDS = {
+  seconds: { steps: "more would be possible", cut: "shown in part" },
+  steps: {
+    finished: "nothing more is possible", steps: "more would be possible", cut: "shown in part", until: "more would be possible later",
+    breakpoint: "ended at a breakpoint", evidence: "ends with what it shows", replay: "ended by its trace",
+  },
+};
 
 /**
  * Whether a run that has come to its end has done so where that means failure.
@@ -73,15 +84,15 @@ export class ReplayPage {
   head() {
     const { verdict, title, course } = this.run;
     byId("title").textContent = title;
-    const words = /** @type {Record<string, string>} */ ({ steps: "more would be possible", cut: "shown in part" });
-    const word = course.refused ? "not possible" : words[verdict.word] ?? verdict.word;
-    if (word) {
-      // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
-      const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused && !hasFailed(verdict);
-      const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-      const text = places ? `${word} in ${places}` : word;
-      byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));
-    }
+    const word = course.refused ? "not possible" : loopOf(course) === null ? WORDS[this.run.clock]?.[verdict.word] ?? verdict.word
+      : `repeated for ever from step ${course.loop + 1} on`;
+    if (!word) return;
+    const isBad = course.refused || verdict.word === "error" || hasFailed(verdict) || (this.run.clock === "seconds" && !GOOD.has(verdict.word));
+    const kind = isBad ? "bad" : this.run.clock === "seconds" ? "good" : "plain";
+    // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
+    const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
+    const text = places ? `${word} in ${places}` : word;
+    byId("verdict").replaceChildren(el("span", { class: `chip ${kind}`, text, title: verdict.reason }));
   }
 
   /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */
@@ -138,7 +149,7 @@ export class ReplayPage {
     if (verdict.reason) list.append(...row("reason", verdict.reason));
     if (verdict.final.length) list.append(...row("ended in", verdict.final.join(", ")));
     if (course.refused) list.append(...row(`step ${course.refused.step}`, `${course.refused.transition}: ${course.refused.why}`));
-    if (course.loop !== null) list.append(...row("lasso", `after the last step the run goes on after step ${course.loop}`));
+    if (loopOf(course) !== null) list.append(...row("lasso", `the steps from step ${course.loop + 1} on are repeated for ever`));
     for (const note of cell?.notes ?? []) list.append(...row("shapes", note));
     list.append(...row("made by", this.data.generator));
     host.append(list);

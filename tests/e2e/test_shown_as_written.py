@@ -94,6 +94,50 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
     }
 
 
+def test_the_end_of_a_trace_is_neither_good_nor_bad_and_a_lasso_goes_on(
+    tmp_path: Path, chromium: Any
+) -> None:
+    run = described(tmp_path)
+    run["course"]["loop"] = 12
+    file = tmp_path / "replay.html"
+    file.write_text(page(run), encoding="utf-8")
+    with opened(chromium) as browser:
+        browser.open(file)
+        found = browser.ask(
+            """() => {
+              const { page } = replay, { clock, run } = page;
+              const chips = () => [...document.querySelectorAll("#verdict .chip")];
+              const chip = () => chips().map((c) => `${c.className}: ${c.innerText}`);
+              const told = [...chip(), document.querySelector(".panel.run").textContent];
+              const request = window.requestAnimationFrame;
+              window.requestAnimationFrame = () => 0;
+              clock.seek(29.9), clock.play();
+              const at = [1000, 1050, 1200, 2300].map((t) => (clock.frame(t), [clock.k, clock.isPlaying]));
+              clock.pause();
+              run.course.loop = null;
+              clock.seek(29.9), clock.play(), clock.frame(1000), clock.frame(1200);
+              window.requestAnimationFrame = request;
+              const words = ["finished", "steps", "until", "error"].flatMap((word) => {
+                run.verdict.word = word;
+                page.head();
+                return chip();
+              });
+              return { told, at, ended: [clock.k, clock.isPlaying], words };
+            }"""
+        )
+        assert browser.errors == []
+    assert found["told"][0] == "chip plain: repeated for ever from step 13 on"
+    assert "the steps from step 13 on are repeated for ever" in found["told"][1]
+    assert found["at"] == [[29, True], [29, True], [12, True], [13, True]]
+    assert found["ended"] == [30, False]
+    assert found["words"] == [
+        "chip plain: nothing more is possible",
+        "chip plain: more would be possible",
+        "chip plain: more would be possible later",
+        "chip bad: error",
+    ]
+
+
 @pytest.mark.parametrize("count", [4, 5, 11])
 def test_every_curve_is_named_within_its_chart(count: int, tmp_path: Path, chromium: Any) -> None:
     shown = with_arm(described(tmp_path))
