@@ -48,7 +48,7 @@ export class Transport {
     this.of = el("span", { class: "of" });
     this.step = el("span", { class: "of" });
     this.speed = el("input", {
-      type: "range", class: "speed", min: Math.log10(SLOWEST), max: Math.log10(FASTEST), step: 0.01, value: 0, "aria-label": "Speed",
+      type: "range", class: "speed", min: Math.log10(SLOWEST), max: Math.log10(FASTEST), step: "any", value: 0, "aria-label": "Speed",
       oninput: () => clock.setSpeed(10 ** Number(this.speed.value)),
     });
     this.speedText = el("output", { class: "of" });

@@ -72,7 +72,11 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
                 const again = written.read(written.write(t));
                 return clock.course.stepAt(again) === clock.k && Math.abs(again - t) < 6e-4;
               };
+              const slider = page.transport.speed;
+              const set = (s) => (slider.value = s, slider.dispatchEvent(new Event("input")), clock.speed);
+              const speeds = ["-9", "9"].map(set);
               return {
+                speeds,
                 steps: steps.map((text) => typed(text).k),
                 moments: moments.map((text) => typed(text).t),
                 nothing: nothing.map((text) => [typed(text).t, time.value]),
@@ -85,6 +89,7 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
         chip = browser.page.locator("#verdict .chip.bad")
         assert chip.inner_text() == "finished in Jammed"
         assert browser.errors == []
+    assert found.pop("speeds") == pytest.approx([0.1, 50])
     assert found == {
         "steps": list(steps.values()),
         "moments": list(moments.values()),
