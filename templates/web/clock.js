@@ -1,6 +1,8 @@
 // @ts-check
 /** The one cursor of the page: a moment and a step, playing or not. All views listen to it. */
 
+import { loopOf } from "./course.js";
+
 /** @typedef {import("./course.js").Course} Course */
 
 export const SLOWEST = 0.1;
@@ -85,13 +87,20 @@ export class Clock {
     return { isPlaying: this.isPlaying, speed: this.speed };
   }
 
+  /** The end, while playing: a lasso goes on where its cycle begins. */
+  again() {
+    const loop = loopOf(this.course.run.course);
+    if (loop === null) this.pause();
+    else this.step(loop);
+  }
+
   /** @param {number} now */
   frame(now) {
     if (!this.isPlaying) return;
     const passed = this.last ? Math.min((now - this.last) / 1000, LONGEST_GAP) : 0;
     this.last = now;
     this.seek(this.t + passed * this.speed);
-    if (this.t >= this.end) this.pause();
+    if (this.t >= this.end) this.again();
     requestAnimationFrame(this.frame);
   }
 }

@@ -17,12 +17,15 @@ export class Code {
   constructor(host, run, clock, onTransition) {
     this.run = run;
     this.clock = clock;
+    this.onTransition = onTransition;
     this.files = run.programs.files;
     /** @type {Map<number, number[][]>} */
     this.elements = new Map(Object.entries(run.programs.elements).map(([t, rows]) => [Number(t), /** @type {any} */ (rows)]));
     this.isFollowing = true;
     /** The file that is shown. */
     this.shown = -1;
+    /** The line that keys have gone to; 0: none. */
+    this.line = 0;
     /** What was lit last. */
     this.key = "";
     this.choice = el(
@@ -37,13 +40,39 @@ export class Code {
     this.text = el("pre", { class: "code", tabindex: "0", "aria-label": "Program" });
     this.marks = el("div", { class: "marks" });
     this.view = el("div", { class: "program" }, this.marks, this.numbers, this.text);
+    this.text.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.press(e));
     this.text.addEventListener("click", (/** @type {MouseEvent} */ e) => {
       const line = Math.floor((e.clientY - this.text.getBoundingClientRect().top) / LINE) + 1;
       const found = this.transitionAt(this.shown, line);
-      if (found >= 0 && getSelection()?.isCollapsed) onTransition(found);
+      if (!getSelection()?.isCollapsed) return;
+      this.line = line;
+      this.light(false);
+      if (found >= 0) onTransition(found);
     });
     host.append(el("header", {}, this.choice, this.follow), this.view);
     this.show(0);
+  }
+
+  /**
+   * Keys do what clicks do: up and down go to a line, Enter to its transition.
+   * @param {KeyboardEvent} e
+   */
+  press(e) {
+    const by = { ArrowDown: 1, ArrowUp: -1 }[e.key];
+    if (by) {
+      const lines = this.files[this.shown].text.split("\n");
+      const { scrollTop, clientHeight } = this.view;
+      this.line = Math.min(Math.max((this.line || Math.floor(scrollTop / LINE) + 1) + by, 1), lines.length);
+      const top = (this.line - 1) * LINE;
+      this.view.scrollTop = Math.min(Math.max(scrollTop, top - clientHeight + 3 * LINE), top);
+      this.text.setAttribute("aria-label", `Program, line ${this.line}: ${lines[this.line - 1].trim()}`);
+      this.light(false);
+    } else if (e.key === "Enter" && this.line) {
+      const found = this.transitionAt(this.shown, this.line);
+      if (found >= 0) this.onTransition(found);
+    } else return;
+    e.preventDefault();
+    e.stopPropagation();
   }
 
   /** @param {boolean} on */
@@ -57,6 +86,7 @@ export class Code {
   show(file) {
     if (file === this.shown || !this.files[file]) return;
     this.shown = file;
+    this.line = 0;
     this.choice.value = String(file);
     const text = this.files[file].text;
     const lines = text.split("\n").length;
@@ -100,7 +130,8 @@ export class Code {
     return rows;
   }
 
-  light() {
+  /** @param {boolean} [isShowing] scrolls to what is lit */
+  light(isShowing = this.isFollowing) {
     const rows = (this.rows ?? []).filter(([file]) => file === this.shown);
     this.marks.replaceChildren(
       ...rows.map(([, first, last, kind]) => {
@@ -110,8 +141,16 @@ export class Code {
         return mark;
       }),
     );
-    const row = rows.find(([, , , kind]) => kind === "occurs") ?? rows[0];
-    if (!row || !this.isFollowing) return;
+    if (this.line) {
+      const mark = el("div", { class: "mark line" });
+      mark.style.top = `${(this.line - 1) * LINE}px`;
+      mark.style.height = `${LINE}px`;
+      this.marks.append(mark);
+    }
+    // A script declares what a transition takes before its lines: those are meant, the longest piece.
+    const lit = rows.filter(([, , , kind]) => kind === "occurs");
+    const row = lit.length ? lit.reduce((a, b) => (b[2] - b[1] > a[2] - a[1] ? b : a)) : rows[0];
+    if (!row || !isShowing) return;
     const view = this.view.clientHeight;
     const top = (row[1] - 1) * LINE;
     if (top < this.view.scrollTop || top > this.view.scrollTop + view - 4 * LINE) {

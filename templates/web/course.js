@@ -17,6 +17,15 @@ export function upperBound(sorted, value) {
   return low;
 }
 
+/**
+ * After which step a lasso goes on when it has come to its end; null: it is none.
+ * @param {any} course of the description
+ * @returns {number | null}
+ */
+export function loopOf({ loop = null, steps, refused }) {
+  return Number.isInteger(loop) && loop >= 0 && loop < steps && !refused ? loop : null;
+}
+
 export class Course {
   /** @param {any} run the description */
   constructor(run) {

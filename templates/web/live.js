@@ -6,7 +6,7 @@ import { byId, el } from "./dom.js";
 import { Hand } from "./hand.js";
 import { LiveClock } from "./liveclock.js";
 import { LiveLink, addTo } from "./livelink.js";
-import { ReplayPage, probes } from "./replaypage.js";
+import { ReplayPage, hasFailed, probes } from "./replaypage.js";
 import { Sides } from "./sides.js";
 
 const WINDOW_S = 30;
@@ -77,7 +77,7 @@ class LivePage extends ReplayPage {
    */
   ended(verdict) {
     this.head();
-    if (this.run.watched) say(watchedText(verdict), verdict.word === "finished" || verdict.word === "has not started" ? "note" : "bad");
+    if (this.run.watched) say(watchedText(verdict), ["finished", "has not started"].includes(verdict.word) && !hasFailed(verdict) ? "note" : "bad");
   }
 
   update() {
@@ -145,9 +145,10 @@ function say(text, kind) {
  * What the page of a watch says of a cell that does not run.
  * @param {any} verdict
  */
-function watchedText({ word, reason }) {
+function watchedText(verdict) {
+  const { word, reason } = verdict;
   if (word === "has not started") return `The cell has not started: ${reason}.`;
-  if (word === "finished") return "The cell has finished. The page waits for its next start.";
+  if (word === "finished") return `The cell has ${hasFailed(verdict) ? "ended in failure" : "finished"}. The page waits for its next start.`;
   return `The cell does not run any more (${word})${reason ? `: ${reason}` : ""}. The page waits for its next start.`;
 }
 
@@ -198,8 +199,11 @@ function finish() {
     page.update();
     return;
   }
-  const word = page?.run.verdict.word;
-  say(word ? `The run has ${word === "finished" ? "finished" : `ended: ${word}`}. Its records are in its folder.` : "The live view has ended. How the run ends is in the terminal and in its folder.", word === "finished" ? "note" : "bad");
+  const verdict = page?.run.verdict ?? {};
+  const isGood = verdict.word === "finished" && !hasFailed(verdict);
+  const how = isGood ? "finished" : verdict.word === "finished" ? "ended in failure" : `ended: ${verdict.word}`;
+  const text = verdict.word ? `The run has ${how}. Its records are in its folder.` : "The live view has ended. How the run ends is in the terminal and in its folder.";
+  say(text, isGood ? "note" : "bad");
   page?.update();
 }
 

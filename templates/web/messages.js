@@ -4,6 +4,7 @@
 import { upperBound } from "./course.js";
 import { el, shorten, svg } from "./dom.js";
 import { LongList } from "./list.js";
+import { findSteps } from "./sent.js";
 
 const ROW = 24;
 /** Of a party, as in the style sheet; narrow where one pane is shown at a time. */
@@ -24,11 +25,15 @@ export class Messages {
     this.parties = run.happenings?.parties ?? [];
     /** @type {number[]} */
     this.times = Array.from(this.messages, (/** @type {any} */ m) => m.t);
+    /** The step that writes or takes each, 0: not known. @type {number[]} */
+    this.steps = [];
+    findSteps(this.messages, clock.course, this.steps);
     const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
     host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));
     this.list = new LongList(host, {
       label: "Messages", count: this.messages.length, height: ROW, row: (i) => this.row(i),
       onRow: (i) => {
+        this.to(i);
         onMessage(this.messages[i]);
         this.list.go(i);
       },
@@ -52,25 +57,46 @@ export class Messages {
     );
     const said = `${m.channel}: ${m.text}`;
     return el(
-      "div", { class: m.t <= this.clock.t + 1e-9 ? "message" : "message later", title: `${said}\n${m.what} at ${m.t.toFixed(3)} s` },
+      "div", { class: i < this.count() ? "message" : "message later", title: `${said}\n${m.what} at ${m.t.toFixed(3)} s` },
       el("span", { class: "when", text: m.t.toFixed(2) }), drawing,
       el("span", { class: "said" }, el("b", { text: m.channel }), ` ${shorten(m.text, 200)}`),
       el("span", { class: "hidden", text: `from ${this.parties[m.from]?.name} to ${this.parties[m.to]?.name}` }),
     );
   }
 
-  /** How many messages have been sent by a moment. */
+  /** How many messages have been sent by now: of those at this moment, the ones of steps that have occurred. */
   count() {
-    return upperBound(this.times, this.clock.t + 1e-9);
+    const { k, t } = this.clock;
+    let n = upperBound(this.times, t + 1e-9);
+    while (n && this.isNow(n - 1) && this.steps[n - 1] > k) n--;
+    return n;
+  }
+
+  /** @param {number} i */
+  isNow(i) {
+    return this.times[i] > this.clock.t - 1e-9;
   }
 
   /**
-   * The moment of the next message, or the one before; NaN: there is none.
+   * To the next message, or the one before, if there is one.
    * @param {number} by
    */
-  next(by) {
-    const i = by > 0 ? this.count() : upperBound(this.times, this.clock.t - 1e-9) - 1;
-    return this.times[i] ?? NaN;
+  step(by) {
+    let i = this.count();
+    if (by < 0) {
+      i--;
+      while (i >= 0 && this.isNow(i) && (this.steps[i] || this.clock.k) === this.clock.k) i--;
+    }
+    if (this.messages[i]) this.to(i);
+  }
+
+  /**
+   * To a message: to the step that writes or takes it, or else to its moment.
+   * @param {number} i
+   */
+  to(i) {
+    if (this.steps[i]) this.clock.step(this.steps[i]);
+    else this.clock.seek(this.times[i]);
   }
 
   /**
@@ -89,6 +115,7 @@ export class Messages {
   grow() {
     if (this.times.length === this.messages.length) return;
     for (let i = this.times.length; i < this.messages.length; i++) this.times.push(this.messages[i].t);
+    findSteps(this.messages, this.clock.course, this.steps);
     this.list.resize(this.messages.length);
   }
 

@@ -1,20 +1,25 @@
 // @ts-check
-/** How a moment is written, so that whoever reads it comes to where it was written, and not a little before. */
+/** How a moment is written and read, so that whoever reads it comes to where it was written, and not a little before. */
 
 import { upperBound } from "./course.js";
 
+/** With so many digits the page shows moments, and the addresses of most (s). */
+export const SHOWN = 2;
 const FEWEST = 3;
 const MOST = 9;
+const NUMBER = /^([+-]?(?:\d+(?:[.,](\d*))?|[.,](\d+))(?:e[+-]?\d+)?)\s*s?$/i;
+
+/** @typedef {import("./clock.js").Clock} Clock */
 
 export class Moments {
   /**
-   * @param {any} run the description; its axis is in seconds
-   * @param {import("./course.js").Course} course
+   * @param {any} run the description
+   * @param {Clock} clock
    */
-  constructor(run, course) {
-    this.course = course;
+  constructor(run, clock) {
+    this.clock = clock;
     const { bars = [], messages = [], events = [] } = run.happenings ?? {};
-    const times = [run.end, ...(run.cell?.gaps.t ?? [])];
+    const times = [...(run.cell?.gaps.t ?? [])];
     for (const bar of bars) times.push(bar.start, bar.end);
     for (const { t } of [...messages, ...events, ...(run.cell?.marks ?? [])]) times.push(t);
     /** When something begins, ends or happens, beside the steps. */
@@ -22,15 +27,45 @@ export class Moments {
   }
 
   /**
-   * A moment in seconds, with as few digits as leave everything that has happened by then.
+   * A moment in seconds, with as few digits as lead back to it, or to where the same has happened.
    * @param {number} t
    */
   write(t) {
     for (let digits = FEWEST; digits <= MOST; digits++) {
-      const written = Number(t.toFixed(digits));
-      if (this.course.stepAt(written) === this.course.stepAt(t) && this.past(written) === this.past(t)) return String(written);
+      const text = t.toFixed(digits);
+      const found = [String(Number(text)), text].find((written) => this.isSame(this.read(written), t));
+      if (found) return found;
     }
     return String(t);
+  }
+
+  /**
+   * The moment that somebody means; NaN where it is none. What happens a little later is shown with the same digits,
+   * and who writes them means that it has happened.
+   * @param {string} text
+   */
+  read(text) {
+    const [, number = "", whole = "", part = ""] = NUMBER.exec(text.trim()) ?? [];
+    if (!number) return NaN;
+    const t = Number(number.replace(",", "."));
+    if (this.clock.course.run.clock !== "seconds") return t;
+    const digits = Math.max((whole || part).length, SHOWN);
+    const later = t + 0.5 * 10 ** -digits;
+    const { course, end } = this.clock;
+    const last = (/** @type {ArrayLike<number>} */ times, /** @type {number} */ count) => {
+      while (count && times[count - 1] > t && Number(times[count - 1].toFixed(digits)) !== t) count--;
+      return count ? times[count - 1] : t;
+    };
+    return Math.max(t, last(course.time, course.stepAt(later)), last(this.edges, this.past(later)), last([end], 1));
+  }
+
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
+  isSame(one, other) {
+    const { course } = this.clock;
+    return course.stepAt(one) === course.stepAt(other) && this.past(one) === this.past(other);
   }
 
   /** @param {number} t */

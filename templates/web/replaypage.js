@@ -5,7 +5,7 @@ import { Beside } from "./beside.js";
 import { CellView } from "./cellview.js";
 import { Clock } from "./clock.js";
 import { Code } from "./code.js";
-import { Course } from "./course.js";
+import { Course, loopOf } from "./course.js";
 import { byId, el } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
@@ -16,6 +16,23 @@ import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
 import { Watch } from "./watch.js";
+
+/** How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
+const GOOD = new Set(["finished", "steps", "cut"]);
+/** @type {Record<string, Record<string, string>>} */
+const WORDS = {
+  seconds: { steps: "more would be possible", cut: "shown in part" },
+  steps: {
+    finished: "nothing more is possible", steps: "more would be possible", cut: "shown in part", until: "more would be possible later",
+    breakpoint: "ended at a breakpoint", evidence: "ends with what it shows", replay: "ended by its trace",
+  },
+};
+
+/**
+ * Whether a run that has come to its end has done so where that means failure.
+ * @param {any} verdict
+ */
+export const hasFailed = (verdict) => Boolean(verdict.failed?.length);
 
 /** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
 const PANES_MS = 200;
@@ -28,7 +45,7 @@ export class ReplayPage {
     this.run = data.runs[0];
     this.course = new Course(this.run);
     this.clock = this.makeClock();
-    this.written = new Moments(this.run, this.course);
+    this.written = new Moments(this.run, this.clock);
     this.transition = -1;
     this.place = -1;
     document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
@@ -50,6 +67,7 @@ export class ReplayPage {
     this.search = new Search(byId("search"), this.clock, actions);
     this.transport = new Transport(byId("transport"), this.clock, {
       message: (by) => this.toMessage(by), mark: (by) => this.toMark(by),
+      moment: (text) => this.written.read(text),
       hasMessages: Boolean(this.messages), hasMarks: this.run.live || this.moments().length > 0,
     });
     this.clock.listen(() => this.update());
@@ -66,15 +84,15 @@ export class ReplayPage {
   head() {
     const { verdict, title, course } = this.run;
     byId("title").textContent = title;
-    const words = /** @type {Record<string, string>} */ ({ steps: "more would be possible", cut: "shown in part" });
-    const word = course.refused ? "not possible" : words[verdict.word] ?? verdict.word;
-    if (word) {
-      const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused;
-      // A run that has finished may have done so in a place that means failure: the place is named as well.
-      const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-      const text = places ? `${word} in ${places}` : word;
-      byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));
-    }
+    const word = course.refused ? "not possible" : loopOf(course) === null ? WORDS[this.run.clock]?.[verdict.word] ?? verdict.word
+      : `repeated for ever from step ${course.loop + 1} on`;
+    if (!word) return;
+    const isBad = course.refused || verdict.word === "error" || hasFailed(verdict) || (this.run.clock === "seconds" && !GOOD.has(verdict.word));
+    const kind = isBad ? "bad" : this.run.clock === "seconds" ? "good" : "plain";
+    // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
+    const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
+    const text = places ? `${word} in ${places}` : word;
+    byId("verdict").replaceChildren(el("span", { class: `chip ${kind}`, text, title: verdict.reason }));
   }
 
   /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */
@@ -96,7 +114,7 @@ export class ReplayPage {
     this.tabs = tabs;
     this.firstPanel(add);
     if (this.run.happenings?.messages.length || this.run.live) {
-      this.messages = new Messages(add("Messages"), this.run, this.clock, (m) => this.onMessage(m));
+      this.messages = new Messages(add("Messages"), this.run, this.clock, (m) => this.selectPlace(m.place));
     }
     this.steps = new Steps(add("Steps"), this.clock);
     if (this.run.programs) this.code = new Code(add("Code"), this.run, this.clock, actions.onTransition);
@@ -131,7 +149,7 @@ export class ReplayPage {
     if (verdict.reason) list.append(...row("reason", verdict.reason));
     if (verdict.final.length) list.append(...row("ended in", verdict.final.join(", ")));
     if (course.refused) list.append(...row(`step ${course.refused.step}`, `${course.refused.transition}: ${course.refused.why}`));
-    if (course.loop !== null) list.append(...row("lasso", `after the last step the run goes on after step ${course.loop}`));
+    if (loopOf(course) !== null) list.append(...row("lasso", `the steps from step ${course.loop + 1} on are repeated for ever`));
     for (const note of cell?.notes ?? []) list.append(...row("shapes", note));
     list.append(...row("made by", this.data.generator));
     host.append(list);
@@ -165,14 +183,14 @@ export class ReplayPage {
 
   /** @param {number} by */
   toMessage(by) {
-    const t = this.messages?.next(by) ?? NaN;
-    if (Number.isFinite(t)) this.clock.seek(t);
+    this.messages?.step(by);
   }
 
   /** @param {any} bar */
   onBar(bar) {
     if (this.clock.t < bar.start || this.clock.t >= bar.end) this.clock.seek(bar.start);
-    if (bar.transition >= 0) this.selectTransition(bar.transition, false);
+    const transition = bar.kind === "activity" ? this.timeline.firstOf(bar) : bar.transition;
+    if (transition >= 0) this.selectTransition(transition, false);
   }
 
   /**
@@ -187,12 +205,6 @@ export class ReplayPage {
     const begun = bars.filter((/** @type {any} */ b) => b.party === party && b.start <= t);
     const bar = begun.find((/** @type {any} */ b) => t < b.end) ?? begun.pop();
     if (bar?.transition >= 0) this.selectTransition(bar.transition, false);
-  }
-
-  /** @param {any} message */
-  onMessage(message) {
-    this.clock.seek(message.t);
-    this.selectPlace(message.place);
   }
 
   /**
@@ -222,10 +234,13 @@ export class ReplayPage {
     this.messages?.reveal(p);
   }
 
+  /** To the step or the moment that the address names; what is neither leads nowhere. */
   fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
-    if (words.has("step")) this.clock.step(Number(words.get("step")) || 0);
-    else if (words.has("t")) this.clock.seek(Number(words.get("t")));
+    const step = Number(words.get("step") || NaN);
+    const t = this.written.read(words.get("t") ?? "");
+    if (Number.isInteger(step)) this.clock.step(step);
+    else if (Number.isFinite(t)) this.clock.seek(t);
     else return false;
     return true;
   }

@@ -94,20 +94,50 @@ export class Search {
         found.push({ kind: "place", text: p.short, more: p.name, go: () => this.actions.onPlace(i) });
       }
     });
-    return [...found.slice(0, MOST), ...this.values(word)];
+    const { texts: all } = course;
+    /** @type {Set<number>} */
+    const texts = new Set();
+    all.forEach((/** @type {string} */ text, /** @type {number} */ i) => text.toLowerCase().includes(word) && texts.add(i));
+    return [...found.slice(0, MOST), ...this.held(texts), ...this.bound(texts)];
+  }
+
+  /**
+   * Which places hold a value: now, or else where it comes next.
+   * @param {Set<number>} texts those that the value may be, by number
+   * @returns {Found[]}
+   */
+  held(texts) {
+    const { course, k: now } = this.clock;
+    if (!course.tokens || !texts.size) return [];
+    const { place: placeOf, text: textOf } = course.tokens;
+    /** @type {Map<number, Found>} */
+    const found = new Map();
+    const note = (/** @type {number} */ token, /** @type {number} */ k, /** @type {string} */ when) => {
+      const place = placeOf[token];
+      if (found.has(place) || !texts.has(textOf[token])) return;
+      const text = course.texts[textOf[token]].replace(/\s+/g, " ");
+      const go = () => (k === now || this.clock.step(k), this.actions.onPlace(place));
+      found.set(place, { kind: "value", text, more: `${when} ${course.net.places[place].name}`, go });
+    };
+    course.held.forEach((held) => held.forEach((_, token) => note(token, now, "now in")));
+    const { changes, keys } = course;
+    for (let n = 0; n < course.steps && found.size < MOST; n++) {
+      const k = ((now + n) % course.steps) + 1;
+      for (let i = changes.offset[k - 1]; i < changes.offset[k]; i++) {
+        if (changes.count[i] > 0) note(changes.token[i], k, `step ${k}: comes to`);
+      }
+    }
+    for (let i = 0; i < keys.offset[1]; i++) note(keys.token[i], 0, "at the beginning in");
+    return [...found.values()].slice(0, MOST);
   }
 
   /**
    * Where a value is bound, from the current step on.
-   * @param {string} word
+   * @param {Set<number>} texts those that the value may be, by number
    * @returns {Found[]}
    */
-  values(word) {
+  bound(texts) {
     const { course } = this.clock;
-    const texts = new Set();
-    course.texts.forEach((/** @type {string} */ text, /** @type {number} */ i) => {
-      if (text.toLowerCase().includes(word)) texts.add(i);
-    });
     /** @type {Found[]} */
     const found = [];
     for (let n = 0; texts.size && n < course.steps && found.length < MOST; n++) {

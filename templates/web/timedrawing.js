@@ -71,7 +71,8 @@ export function drawMoment(view, c, h) {
 function axis(view, c, w, h) {
   const wanted = (view.to - view.from) / Math.max((w - LEFT) / 90, 1);
   const power = 10 ** Math.floor(Math.log10(wanted));
-  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
+  const found = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
+  const step = view.run.clock === "seconds" ? found : Math.max(found, 1); // there is no half of a step
   c.fillStyle = view.ink?.faint ?? "";
   c.strokeStyle = view.ink?.line ?? "";
   c.lineWidth = 1;

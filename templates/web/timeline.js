@@ -2,6 +2,7 @@
 /** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
 
 import { LEFT, charts, growCharts, legendHeight } from "./charts.js";
+import { upperBound } from "./course.js";
 import { growLanes, lanesOf } from "./lanes.js";
 import { GAP, HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
 
@@ -216,6 +217,19 @@ export class Timeline {
     // What takes little time is a few pixels wide at most, but can still be hit.
     const slack = ((this.to - this.from) / this.width()) * 3;
     return lane.bars.find((b) => b.start - slack <= t && t <= b.end + slack) ?? null;
+  }
+
+  /**
+   * The transition with which an activity of the supervisor begins; -1: none.
+   * @param {any} bar
+   */
+  firstOf(bar) {
+    const [{ steps, ticks }] = this.lanes;
+    const { course } = this.clock;
+    for (let i = upperBound(ticks, bar.start - 1e-9); i < steps.length && ticks[i] <= bar.end; i++) {
+      if (course.occurred(steps[i]).name.split(".").includes(bar.label)) return course.transition[steps[i] - 1];
+    }
+    return -1;
   }
 
   /**

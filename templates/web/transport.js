@@ -3,11 +3,9 @@
 
 import { FASTEST, SLOWEST } from "./clock.js";
 import { el } from "./dom.js";
+import { SHOWN } from "./moment.js";
 
 /** @typedef {import("./clock.js").Clock} Clock */
-
-/** With so many digits the moment and the end are shown (s). */
-const SHOWN = 2;
 
 const KEYS = [
   ["Space", "play and pause"],
@@ -30,7 +28,8 @@ export class Transport {
   /**
    * @param {HTMLElement} host
    * @param {Clock} clock
-   * @param {{message: (by: number) => void, mark: (by: number) => void, hasMessages: boolean, hasMarks: boolean}} moves
+   * @param {{message: (by: number) => void, mark: (by: number) => void, moment: (text: string) => number,
+   *   hasMessages: boolean, hasMarks: boolean}} moves
    */
   constructor(host, clock, moves) {
     this.clock = clock;
@@ -44,12 +43,12 @@ export class Transport {
     });
     this.time = el("input", {
       class: "time", inputmode: "decimal", "aria-label": "Moment in seconds", value: "0",
-      onchange: () => clock.seek(this.written(Number(this.time.value))),
+      onchange: () => this.typed(moves.moment(this.time.value)),
     });
     this.of = el("span", { class: "of" });
     this.step = el("span", { class: "of" });
     this.speed = el("input", {
-      type: "range", class: "speed", min: Math.log10(SLOWEST), max: Math.log10(FASTEST), step: 0.01, value: 0, "aria-label": "Speed",
+      type: "range", class: "speed", min: Math.log10(SLOWEST), max: Math.log10(FASTEST), step: "any", value: 0, "aria-label": "Speed",
       oninput: () => clock.setSpeed(10 ** Number(this.speed.value)),
     });
     this.speedText = el("output", { class: "of" });
@@ -72,12 +71,18 @@ export class Transport {
   }
 
   /**
-   * The moment that somebody means: the end is shown rounded, and who writes it so means the end.
+   * A moment was written: there it goes, and shows how it is called; what is none leaves all as it was.
    * @param {number} t
    */
-  written(t) {
-    const { end } = this.clock;
-    return t === Number(end.toFixed(SHOWN)) ? end : t;
+  typed(t) {
+    if (Number.isFinite(t)) this.clock.seek(t);
+    this.time.value = this.shown();
+  }
+
+  /** The moment, as the page shows it. */
+  shown() {
+    const { clock } = this;
+    return clock.course.run.clock === "seconds" ? clock.t.toFixed(SHOWN) : String(clock.k);
   }
 
   update() {
@@ -86,7 +91,7 @@ export class Transport {
     this.play.textContent = clock.isPlaying ? "❚❚" : "▶";
     this.play.setAttribute("aria-label", clock.isPlaying ? "Pause (space)" : "Play (space)");
     this.slider.value = String((clock.t / clock.end) * 1000);
-    if (document.activeElement !== this.time) this.time.value = isSeconds ? clock.t.toFixed(SHOWN) : String(clock.k);
+    if (document.activeElement !== this.time) this.time.value = this.shown();
     this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(SHOWN)} s` : ` / ${clock.course.steps.toLocaleString("en")}`;
     const model = clock.course.clock && clock.k ? `time ${clock.course.clock[clock.k - 1]}` : "";
     this.step.textContent = isSeconds ? `step ${clock.k} / ${clock.course.steps}` : model;

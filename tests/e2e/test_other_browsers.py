@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
+from helpers import netbuilder
 from helpers.other_browsers import Other, firefox, webkit
 from helpers.played import served
 from helpers.processes import pn2code
-from helpers.shown import described, opened, with_arm
+from helpers.shown import PAIR, described, opened, with_arm
 from helpers.thorough import THOROUGH
 from pn2code.replay.page import page
 from pn2code.semantics.game.marking import BindingElement
@@ -133,6 +134,35 @@ def test_a_graph(browser: Other, root: Path, tmp_path: Path) -> None:
     browser.press("/", *"7", ENTER)
     browser.wait("document.querySelector('.sheet[data-node=\"7\"]')")
     assert browser.errors() == []
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """A drawing and a report, for both browsers."""
+    folder = tmp_path_factory.mktemp("still")
+    net = netbuilder.write(PAIR, folder / "net.cpn")
+    drawing, report = folder / "drawing.html", folder / "report.html"
+    assert pn2code("draw", net, "-o", drawing).returncode == 0
+    options = ("--max-states", "20", "--report", report, "-q", "-o", folder)
+    assert pn2code("verify", net, *options).returncode in (0, 3)
+    return [drawing, report]
+
+
+@pytest.mark.cc
+def test_a_drawing_and_a_report(browser: Other, still: list[Path]) -> None:
+    for file, words in zip(still, ("Sub", "Bounds"), strict=True):
+        browser.open(file.as_uri())
+        browser.wait("document.readyState === 'complete'")
+        assert words in browser.ask("() => document.querySelector('main').textContent")
+        width, styled = browser.ask(
+            "() => [document.documentElement.scrollWidth - innerWidth,"
+            " getComputedStyle(document.body).fontFamily.includes('sans')]"
+        )
+        assert width <= 0 and styled
+        if words == "Sub":
+            browser.press("/", *"Move", ENTER)
+            browser.wait("location.hash.length > 1")
+        assert browser.errors() == []
 
 
 @pytest.mark.skipif(not THOROUGH, reason="Chromium does it in each run (test_replay_page)")

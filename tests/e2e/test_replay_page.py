@@ -182,6 +182,69 @@ class TestRivetingCell:
         place = browser.ask("() => replay.page.course.net.places[replay.page.place].short")
         assert place == shown.result.record.traffic[0][1].channel
 
+    def test_messages_of_one_moment_are_told_apart(self, browser: Page) -> None:
+        """At 33.42 s there are five: each step by message leads to the step that writes or takes it."""
+        found = browser.ask("""() => {
+            const { page } = replay, { clock, course, messages } = page, rows = [];
+            page.update = () => messages.update();  // the arms need not be drawn at each of them
+            replay.step(0);
+            for (let before = -1; messages.list.current > before || before < 0; page.toMessage(1)) {
+              before = messages.list.current;
+              rows.push([before, clock.k, clock.t]);
+            }
+            const back = [];
+            for (; messages.list.current > 0; page.toMessage(-1)) back.push(messages.list.current);
+            const moves = messages.messages.map(({ place }, i) => {
+              const k = messages.steps[i], { offset, token } = course.changes;
+              return [...token.slice(offset[k - 1], offset[k])].some((x) => course.tokens.place[x] === place);
+            });
+            delete page.update;
+            messages.list.rows.onRow(7);
+            return { rows, back, moves, times: messages.times, one: [clock.k, messages.steps[7]] };
+        }""")
+        times, rows = found["times"], [row for row in found["rows"] if row[0] >= 0]
+        assert len(set(times)) < len(rows) > 150 and all(found["moves"])
+        assert [t for _, _, t in rows] == [times[i] for i, _, _ in rows]
+        assert [k for _, k, _ in rows] == sorted({k for _, k, _ in rows})
+        assert found["back"] == [i for i, _, _ in rows][::-1][: len(found["back"])]
+        assert len(found["back"]) >= len(rows) - 1
+        assert found["one"][0] == found["one"][1]
+
+    def test_an_activity_leads_to_the_transition_with_which_it_begins(self, browser: Page) -> None:
+        where = """() => { const l = replay.page.timeline; l.whole(); replay.seek(0);
+            const b = l.canvas.getBoundingClientRect(); return [b.x + l.x(50), b.y + 20 + 0.5 * l.lane]; }"""
+        browser.page.mouse.click(*browser.ask(where))
+        browser.settled()
+        name = "() => replay.page.course.net.transitions[replay.page.transition].name"
+        assert browser.ask(name).startswith("Cell.Supervisor.Install.")
+        assert browser.page.locator("#net .selected").count() == 1
+
+    def test_keys_go_to_a_line_of_code_and_its_transition(
+        self, browser: Page, shown: Shown
+    ) -> None:
+        blocks = {f.path: f.blocks for f in shown.result.prepared.generated.files}["robot1.tdl"]
+        longest = max(
+            (b for b in blocks if b.element == "Cell.Robot1.Drill"), key=lambda b: b.last - b.first
+        )
+        browser.page.get_by_role("tab", name="Code").click()
+        seen = browser.ask("""() => {
+            const { page } = replay, { code, net } = page;
+            replay.step(0);
+            code.setFollowing(true);
+            page.selectTransition(net.net.transitions.findIndex((t) => t.name === "Cell.Robot1.Drill"), true);
+            return [code.files[code.shown].name, code.view.scrollTop / 17, code.view.clientHeight / 17];
+        }""")
+        assert seen[0] == "robot1.tdl" and seen[1] < longest.first < seen[1] + seen[2]
+        text = browser.page.locator("pre.code")
+        browser.ask("(line) => (replay.page.code.line = line)", longest.first - 1)
+        text.press("ArrowDown")
+        assert f"line {longest.first}: " in str(text.get_attribute("aria-label"))
+        assert browser.page.locator(".mark.line").count() == 1
+        browser.ask("() => replay.page.selectPlace(0)")
+        text.press("Enter")
+        name = "() => replay.page.course.net.transitions[replay.page.transition].name"
+        assert browser.ask(name) == "Cell.Robot1.Drill"
+
     def test_a_place_leads_to_its_message(self, browser: Page, shown: Shown) -> None:
         found = browser.ask("""() => {
             const { page } = replay, { messages } = page;
@@ -550,6 +613,24 @@ def test_a_trace_without_arms_on_a_phone_in_the_dark(tmp_path: Path, chromium: A
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
         assert browser.ask("() => [...document.querySelectorAll('#net .tokens text')].length") > 0
         assert browser.ask("() => document.querySelectorAll('.flight').length") == 0
+        # A value that no step binds is found where it is, now or later.
+        found = browser.ask("""() => {
+            const { search, course, clock } = replay.page;
+            clock.step(course.steps);
+            const marking = replay.marking();
+            const all = marking.map(([, text]) => text).join("++");
+            const last = String(Math.max(...[...all.matchAll(/`(\\d+)/g)].map((m) => m[1])));
+            const look = () => search.search(last).filter((f) => f.kind === "value").map((f) => f.more);
+            const now = look();
+            clock.step(7);
+            const later = look();
+            search.search(last)[0].go();
+            const { place } = replay.page;
+            return { now, later, text: course.text(place), last, k: clock.k };
+        }""")
+        assert found["now"][0].startswith("now in ") and len(found["now"]) == 1
+        assert len(found["later"]) == 1 and f"step {found['k']}: comes to " in found["later"][0]
+        assert f"`{found['last']}" in found["text"]
         browser.page.get_by_role("button", name="More").click()
         assert browser.page.get_by_role("listbox", name="Steps").is_visible()
         assert browser.errors == []

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from helpers.table_2 import table_2
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
+from pn2code.replay import happenings
 from pn2code.robot.transforms import Array
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.run.engine import Engine
@@ -69,6 +70,8 @@ def assert_both_are_home(root: Path, arms: Arms) -> None:
 def test_the_drill_fails_at_the_third_rivet(root: Path, tmp_path: Path, built: Path) -> None:
     result, arms = failing(root, tmp_path, built, backend="fake")
     assert (result.record.verdict, result.summary["final"]) == ("finished", FINAL)
+    assert result.summary["failed"] == FINAL
+    assert happenings._events(result.record)[-1]["kind"] == "fault"
     assert result.summary["counts"]["rivets"] == 2
     assert_both_are_home(root, arms)
     # Table 2 up to the retreat of the third rivet, and nothing more.

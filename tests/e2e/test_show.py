@@ -11,6 +11,7 @@ from helpers import netbuilder
 from helpers.shown import PAIR, recorded
 from pn2code.cli import main
 from pn2code.replay import three
+from pn2code.replay import trace as traces
 
 
 def pn2code(*arguments: object) -> int:
@@ -139,6 +140,21 @@ def test_a_trace_that_grows_for_ever_is_not_read_to_its_end(tmp_path: Path) -> N
     with file.open("a", encoding="utf-8") as more:
         more.write("this is not a line of a trace\n" * 1000)
     assert pn2code("show", file, net, "--steps", 10, "-o", tmp_path / "a.html") == 0
+
+
+def test_a_line_without_an_end_is_not_read(
+    trace: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a gigabyte in one line nothing is kept, and nothing of it is told but its beginning."""
+    monkeypatch.setattr(traces, "LONGEST_LINE", 20_000)
+    lines = trace.read_text().splitlines()
+    long = lines[1].replace('"transition": "', '"transition": "' + "x" * 30_000)
+    page = trace.with_suffix(".html")
+    for text, most in ((f"{lines[0]}\n{long}\n", 6_000), (f"{lines[0]}\n{'x' * 10_000}\n", 6_000)):
+        trace.write_text(text)
+        assert pn2code("show", trace, trace.with_name("net.cpn"), "-o", page) == 1
+        told = capsys.readouterr().err
+        assert "is shown to step 0" in told and len(told) < most
 
 
 @pytest.mark.parametrize("moment", ["1e999", "NaN", "-1e999", "true", "1" + "0" * 400])

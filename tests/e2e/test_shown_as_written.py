@@ -1,4 +1,4 @@
-"""What the replay page shows is what it says: the end that is typed as it is shown, the name of each curve."""
+"""What the replay page shows is what it says: moments that are typed as they are shown, the name of each curve."""
 
 from __future__ import annotations
 
@@ -40,6 +40,107 @@ def test_the_end_typed_as_it_is_shown_is_the_end(
         field.fill("29.99")
         field.press("Enter")
         assert browser.ask("() => replay.page.clock.t") == 29.99
+
+
+def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
+    tmp_path: Path, chromium: Any
+) -> None:
+    """Steps have more digits than the page shows: whoever types 0.33 means the step at 0.3333, not before it."""
+    run = with_arm(described(tmp_path), 1 / 3)
+    run["verdict"] = {
+        "word": "finished",
+        "reason": "",
+        "final": ["Top.Jammed"],
+        "failed": ["Top.Jammed"],
+    }
+    run["happenings"]["events"] = [{"t": 7.1239, "kind": "warning", "party": 1, "text": "near"}]
+    file = tmp_path / "replay.html"
+    file.write_text(page(run), encoding="utf-8")
+    steps = {f"{k / 3:.2f}": k for k in range(1, 31)}
+    moments = {"3.333": 10 * (1 / 3), "3.3330": 3.333, "7.12": 7.1239, "3,5 s": 3.5}
+    nothing = ["abc", "", "1:05", "Infinity", "3,5,1"]
+    addresses = {"#t=6,5": 19, "#t=4.67": 14, "#t=": 14, "#t=x": 14, "#step=": 14, "#step=x": 14}
+    with opened(chromium) as browser:
+        browser.open(file)
+        found = browser.ask(
+            """([steps, moments, nothing, addresses]) => {
+              const { page } = replay, { clock, written } = page, { time } = page.transport;
+              const typed = (text) => (time.value = text, time.dispatchEvent(new Event("change")), clock);
+              const named = (to) => (history.replaceState(null, "", to), page.fromAddress(), clock.k);
+              const back = (t) => {
+                clock.seek(t);
+                const again = written.read(written.write(t));
+                return clock.course.stepAt(again) === clock.k && Math.abs(again - t) < 6e-4;
+              };
+              const slider = page.transport.speed;
+              const set = (s) => (slider.value = s, slider.dispatchEvent(new Event("input")), clock.speed);
+              const speeds = ["-9", "9"].map(set);
+              return {
+                speeds,
+                steps: steps.map((text) => typed(text).k),
+                moments: moments.map((text) => typed(text).t),
+                nothing: nothing.map((text) => [typed(text).t, time.value]),
+                addresses: addresses.map(named),
+                back: [1, 2, 29, 30].flatMap((k) => [0, 1e-3, 1e-4].map((less) => back(k / 3 - less))),
+              };
+            }""",
+            [list(steps), list(moments), nothing, list(addresses)],
+        )
+        chip = browser.page.locator("#verdict .chip.bad")
+        assert chip.inner_text() == "finished in Jammed"
+        assert browser.errors == []
+    assert found.pop("speeds") == pytest.approx([0.1, 50])
+    assert found == {
+        "steps": list(steps.values()),
+        "moments": list(moments.values()),
+        "nothing": [[3.5, "3.50"]] * len(nothing),
+        "addresses": list(addresses.values()),
+        "back": [True] * 12,
+    }
+
+
+def test_the_end_of_a_trace_is_neither_good_nor_bad_and_a_lasso_goes_on(
+    tmp_path: Path, chromium: Any
+) -> None:
+    run = described(tmp_path)
+    run["course"]["loop"] = 12
+    file = tmp_path / "replay.html"
+    file.write_text(page(run), encoding="utf-8")
+    with opened(chromium) as browser:
+        browser.open(file)
+        found = browser.ask(
+            """() => {
+              const { page } = replay, { clock, run } = page;
+              const chips = () => [...document.querySelectorAll("#verdict .chip")];
+              const chip = () => chips().map((c) => `${c.className}: ${c.innerText}`);
+              const told = [...chip(), document.querySelector(".panel.run").textContent];
+              const request = window.requestAnimationFrame;
+              window.requestAnimationFrame = () => 0;
+              clock.seek(29.9), clock.play();
+              const at = [1000, 1050, 1200, 2300].map((t) => (clock.frame(t), [clock.k, clock.isPlaying]));
+              clock.pause();
+              run.course.loop = null;
+              clock.seek(29.9), clock.play(), clock.frame(1000), clock.frame(1200);
+              window.requestAnimationFrame = request;
+              const words = ["finished", "steps", "until", "error"].flatMap((word) => {
+                run.verdict.word = word;
+                page.head();
+                return chip();
+              });
+              return { told, at, ended: [clock.k, clock.isPlaying], words };
+            }"""
+        )
+        assert browser.errors == []
+    assert found["told"][0] == "chip plain: repeated for ever from step 13 on"
+    assert "the steps from step 13 on are repeated for ever" in found["told"][1]
+    assert found["at"] == [[29, True], [29, True], [12, True], [13, True]]
+    assert found["ended"] == [30, False]
+    assert found["words"] == [
+        "chip plain: nothing more is possible",
+        "chip plain: more would be possible",
+        "chip plain: more would be possible later",
+        "chip bad: error",
+    ]
 
 
 @pytest.mark.parametrize("count", [4, 5, 11])

@@ -315,6 +315,7 @@ rows = ["order"]
 count = { grips = "grip" }
 occurrences = { orders = "Supervisor.Order" }
 warn_condition = 40.0
+failed = ["Failed"]
 
 [layouts.plain]
 description = "as it is"

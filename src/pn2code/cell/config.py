@@ -166,12 +166,15 @@ class ReportConfig:
         count: label -> tool action that is counted.
         occurrences: label -> transition that is counted: its name, or as much of its path as wanted.
         warn_condition: condition numbers above this are reported as close to a singularity.
+        failed: final places that mean that the cell has failed (each with where it stands).
     """
 
     rows: tuple[str, ...] = ()
     count: tuple[tuple[str, str], ...] = ()
     occurrences: tuple[tuple[str, str], ...] = ()
     warn_condition: float = 50.0
+    failed: tuple[str, ...] = ()
+    failed_origins: tuple[Origin, ...] = ()
 
 
 @frozen

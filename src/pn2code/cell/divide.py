@@ -9,7 +9,7 @@ In: a `FlatNet` and a `CellConfig` (or None: the supervisor owns the whole net).
 from __future__ import annotations
 
 from pn2code.cell.config import CellConfig
-from pn2code.cell.final_places import final_places
+from pn2code.cell.final_places import failed_places, final_places
 from pn2code.cell.inputs import inputs_of
 from pn2code.cell.limits import report_limits
 from pn2code.cell.owners import owners_of, owners_of_transitions, touching
@@ -40,6 +40,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     report_undeclared(net, owners, writers, readers, config, find, d)
     inputs = tuple(inputs_of(config, writers, readers, find, d))
     final = final_places(net, config, owners, transition_owner, find, d)
+    failed = failed_places(config, final, find, d)
     if len(d.errors) != before:
         return None
     report_limits(net, channels, inputs, config, d)
@@ -56,5 +57,14 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
         if name in net.program.globals
     }
     return Partition(
-        net, owners, transition_owner, place_owner, channels, inputs, final, primitives, config
+        net,
+        owners,
+        transition_owner,
+        place_owner,
+        channels,
+        inputs,
+        final,
+        primitives,
+        config,
+        failed,
     )

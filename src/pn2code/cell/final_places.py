@@ -1,4 +1,4 @@
-"""The final places of a cell: a token in one says that the supervisor has finished."""
+"""The final places of a cell: a token in one says that it has finished, in some of them that it has failed."""
 
 from __future__ import annotations
 
@@ -80,3 +80,50 @@ def final_places(
             )
         out.append(place.index)
     return tuple(out)
+
+
+def failed_places(
+    config: CellConfig, final: tuple[int, ...], find: PlaceFinder, d: Diagnostics
+) -> tuple[int, ...]:
+    """Those of the final places that `[report]` calls a failure, in its order.
+
+    Args:
+        config: the cell; names of other places are errors (`d`) at their entries.
+        final: the final places.
+        find: gives the place of a name, or reports that there is none.
+        d: where errors go.
+    """
+    out: list[int] = []
+    for name, at in zip(config.report.failed, config.report.failed_origins, strict=True):
+        place = find(name, at, "failed")
+        if place is None:
+            continue
+        if place.index not in final:
+            d.error(
+                codes.CELL_VALUE,
+                f"`failed` names place `{place.name}`, which is not a final place",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="name it in `final` of [supervisor] as well: the cell ends when it holds a token",
+            )
+        elif place.index in out:
+            d.error(
+                codes.CELL_VALUE,
+                f"`failed` names place `{place.name}` twice",
+                at,
+                hint="remove one of the names",
+            )
+        else:
+            out.append(place.index)
+    return tuple(out)
+
+
+def failed_names(net: FlatNet, config: CellConfig | None) -> frozenset[str]:
+    """The names of the places that `[report]` calls a failure, of a net that is not divided; others are left out."""
+    if config is None:
+        return frozenset()
+    find, report = PlaceFinder(net, Diagnostics()), config.report
+    found = [
+        find(n, at, "failed") for n, at in zip(report.failed, report.failed_origins, strict=True)
+    ]
+    return frozenset(place.name for place in found if place is not None)

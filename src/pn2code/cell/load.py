@@ -665,9 +665,12 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 f"`occurrences.{label}` is `{transition}`, but a transition is expected",
                 r.at("report", "occurrences", label),
             )
+    failed = r.texts(table, at, REPORT["failed"])
     return ReportConfig(
         rows,
         tuple((str(k), str(v)) for k, v in count.items()),
         tuple((str(k), str(v)) for k, v in occurrences.items()),
         r.number(table, at, REPORT["warn_condition"]),
+        tuple(name for name, _ in failed),
+        tuple(origin for _, origin in failed),
     )

@@ -5,7 +5,7 @@ Made from a `FlatNet` and a cell's owners; see docs/architecture.md.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -91,6 +91,7 @@ class Partition:
         final_places: a token in any of them means that the supervisor has finished.
         primitives: the functions that are commands of robots, by the number of their symbol.
         config: the cell; None: the net was not divided by one.
+        failed_places: the final places that mean that the cell has failed.
     """
 
     net: FlatNet
@@ -102,3 +103,9 @@ class Partition:
     final_places: tuple[int, ...]
     primitives: Mapping[int, Primitive] = field(default_factory=dict, compare=False)
     config: CellConfig | None = field(default=None, compare=False)
+    failed_places: tuple[int, ...] = field(default=(), compare=False)
+
+    def failed(self, final: Iterable[str]) -> list[str]:
+        """Which of some final places, by name, mean that the cell has failed."""
+        names = {self.net.places[p].name for p in self.failed_places}
+        return [name for name in final if name in names]

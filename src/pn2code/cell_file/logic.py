@@ -429,6 +429,13 @@ REPORT = Section(
             entry="LABEL",
         ),
         Key(
+            "failed",
+            "texts",
+            "Places of `final` that mean that the cell has failed, though the run has come to its end: such an end is "
+            "red on pages and on the screen, and a *no* in `report`.",
+            "a list of places",
+        ),
+        Key(
             "warn_condition",
             "number",
             "Condition numbers above this are reported as close to a singularity.",

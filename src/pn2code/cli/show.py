@@ -178,6 +178,7 @@ def _trace(
     form: Format,
 ) -> Json:
     """A trace and its net."""
+    from pn2code.cell.final_places import failed_names
     from pn2code.cell.locate import locate
     from pn2code.cli.nets import playing
     from pn2code.net import front
@@ -212,6 +213,7 @@ def _trace(
                 storage,
                 most=steps,
                 files=Files(files),
+                failed=failed_names(examined.flat, config),
                 progress=progress.report,
             )
     except OSError as problem:

@@ -243,9 +243,10 @@ def _equal(about: str, is_equal: bool, says: str, is_whole: bool) -> Finding:
 
 def _ran(said: Json) -> tuple[str, list[Finding]]:
     ended = said["verdict"]
-    places = ", ".join(said.get("final") or ())  # a cell may also finish where it has failed
+    places = ", ".join(said.get("final") or ())
+    is_good = ended == "finished" and not said.get("failed")
     text = " ".join(x for x in (ended, places and f"in {places}", said["reason"]) if x)
-    found = [Finding("end", YES if ended == "finished" else NO, text)]
+    found = [Finding("end", YES if is_good else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [

@@ -28,6 +28,13 @@ class Alarms:
         self._new: list[Json] = []
         self._said: set[str] = set()
 
+    def ended(self, t: float, verdict: Json) -> None:
+        """How the cell has come to its end, unless that is what is wanted."""
+        if verdict["word"] != "finished":
+            self.fault(t, "", verdict["reason"] or verdict["word"])
+        elif verdict.get("failed"):
+            self.fault(t, "", f"the cell has ended in {', '.join(verdict['failed'])}")
+
     def fault(self, t: float, party: str, text: str) -> None:
         """Something that stops the cell, or must not be."""
         if text not in self._said:

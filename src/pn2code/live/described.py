@@ -31,7 +31,7 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
         "clock": "seconds",
         "speed": speed,
         "end": 0.0,
-        "verdict": {"word": "", "reason": "", "final": []},
+        "verdict": {"word": "", "reason": "", "final": [], "failed": []},
         "facts": [["layout", config.layout if config else ""]],
         "net": net.describe(document, partition.net),
         "happenings": {

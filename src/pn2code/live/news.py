@@ -104,8 +104,8 @@ class News:
         t = picture["t"]
         verdict = picture.get("verdict")
         self._alarms.look(t, picture)
-        if verdict is not None and verdict["word"] != "finished":
-            self._alarms.fault(t, "", verdict["reason"] or verdict["word"])
+        if verdict is not None:
+            self._alarms.ended(t, verdict)
         for mark in picture["marks"]:
             self._counts[mark["label"]] = self._counts.get(mark["label"], 0) + 1
         self._messages += len(picture["traffic"])

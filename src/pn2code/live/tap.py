@@ -85,6 +85,7 @@ class Tap:
             "word": record.verdict,
             "reason": record.reason,
             "final": list(record.final),
+            "failed": list(record.failed),
         }
         self._place(engine)
         while self._handing.finish(LAST_S):

@@ -109,6 +109,10 @@ class Watched(Closing):
         self.last_word: Json = {}
         self._broken: Json | None = None
 
+    def failed(self, final: Iterable[str]) -> list[str]:
+        """Which of some final places mean that the cell has failed."""
+        return self._cell.partition.failed(final)
+
     # --- what comes ------------------------------------------------------------------------------
 
     def take(self, tail: Tail) -> None:
@@ -309,8 +313,7 @@ class Watched(Closing):
                 self.alarms.fault(t, name, f"has stopped: {side.reason[:LONGEST]}")
         if verdict is not None:
             self._leave(t)
-            if verdict["word"] != "finished":
-                self.alarms.fault(t, "", verdict["reason"] or verdict["word"])
+            self.alarms.ended(t, verdict)
         robots = self._robots.news(t)
         self.alarms.look(t, {"series": robots["series"], "gaps": [], "warnings": []})
         new, self._new = self._new, {"messages": [], "events": [], "activities": []}

@@ -169,9 +169,10 @@ def _verdict(watched: Watched, seen: Seen, state: Life) -> Json:
     last = watched.last_word
     reason = str(last.get("reason", ""))[:400]
     final = [str(p) for p in last.get("final", []) if isinstance(p, str)]
+    finished = {"word": "finished", "reason": "", "final": final, "failed": watched.failed(final)}
     match state:
         case Life.FINISHED:
-            return {"word": "finished", "reason": "", "final": final}
+            return finished
         case Life.STOPPED:
             side = next(iter(seen.sides.values()))
             return {"word": "stopped", "reason": side.reason[:400] or reason, "final": []}
@@ -179,7 +180,7 @@ def _verdict(watched: Watched, seen: Seen, state: Life) -> Json:
             text = "the supervisor has died: it says that it runs, but its process is gone"
             return {"word": "died", "reason": text, "final": []}
     if last.get("why") == "finished":
-        return {"word": "finished", "reason": "", "final": final}
+        return finished
     if last:
         return {"word": str(last.get("why", "ended"))[:40], "reason": reason, "final": []}
     text = "its shared files are gone, and nobody has said why"

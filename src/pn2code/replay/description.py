@@ -94,12 +94,14 @@ def problem_of(data: Any) -> str | None:
 
 def _damaged(data: Json) -> str | None:
     """Which of the members that are said in words is not of its form."""
-    course, final = data["course"], data["verdict"].get("final", [])
+    course = data["course"]
     steps, rows = course["steps"], course["transition"]
     if not isinstance(rows, dict) or type(steps) is not int or steps != rows.get("length"):
         return "is damaged: its `course.steps` is not the number of its steps"
-    if not isinstance(final, list) or not all(isinstance(name, str) for name in final):
-        return "is damaged: its `verdict.final` is no list of names"
+    for name in ("final", "failed"):
+        places = data["verdict"].get(name, [])
+        if not isinstance(places, list) or not all(isinstance(place, str) for place in places):
+            return f"is damaged: its `verdict.{name}` is no list of names"
     refused = course.get("refused")
     if refused is not None and not (
         isinstance(refused, dict)

@@ -92,7 +92,7 @@ def _events(record: RunRecord) -> list[Json]:
         if (note := noted(line)) is not None:
             rows.append(note)
         elif line.get("event") == "end":
-            good = record.verdict == "finished"
+            good = record.verdict == "finished" and not record.failed
             text = record.reason or ", ".join(record.final) or record.verdict
             kind = "end" if good else "fault"
             rows.append({"t": line["t"], "kind": kind, "party": "", "text": text})

@@ -43,6 +43,7 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
             "word": record.verdict,
             "reason": record.reason,
             "final": list(record.final),
+            "failed": list(record.failed),
         },
         "facts": facts(result.summary),
         "net": net.describe(document, flat),

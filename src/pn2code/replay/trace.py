@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from pn2code.net.flat import FlatNet
 from pn2code.reading.document import Document
@@ -25,6 +25,10 @@ from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
 
 MOST_STEPS = 1_000_000
+LONGEST_LINE = 50_000_000
+"""A longer line of a trace (characters) is not read: it is no line of one."""
+MOST_TOLD = 4_000
+"""So many characters are told of what is wrong with a trace."""
 _TOLD_STEPS = 500
 
 Progress = Callable[[int, float], None]
@@ -43,6 +47,7 @@ def describe(
     *,
     most: int = MOST_STEPS,
     files: Files | None = None,
+    failed: Container[str] = (),
     progress: Progress = _nothing,
 ) -> Json:
     """The description of a trace file.
@@ -53,13 +58,14 @@ def describe(
         storage: as for `Game`.
         most: how many steps are shown; the rest is left out, and the page says so.
         files: what the net can do with files.
+        failed: final places that mean that the cell has failed.
         progress: how far it is.
 
     Raises:
         OSError: it cannot be read.
     """
     with trace.open(encoding="utf-8", errors="replace") as lines:
-        reader = _Lines(lines, most, max(trace.stat().st_size, 1), progress)
+        reader = _Lines(_whole(lines), most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
         course, refused = follow(
@@ -76,6 +82,7 @@ def describe(
             "word": "cut" if reader.is_cut else _word(end),
             "reason": str(end.get("reason", "")),
             "final": [str(p) for p in end.get("final", ())],
+            "failed": [str(p) for p in end.get("final", ()) if p in failed],
         },
         "facts": [["trace", trace.name], ["by", by], ["steps", f"{course.steps:,}"]],
         "net": nets.describe(document, net),
@@ -124,7 +131,21 @@ def follow(
 def _refusal(result: ReplayResult) -> Json | None:
     if result.ok:
         return None
-    return {"step": result.steps + 1, "transition": result.transition, "why": result.why}
+    transition, why = (_cut(text) for text in (result.transition, result.why))
+    return {"step": result.steps + 1, "transition": transition, "why": why}
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= MOST_TOLD else f"{text[:MOST_TOLD]}..."
+
+
+def _whole(file: TextIO) -> Iterator[str]:
+    """The lines of a file; one that is too long is the last, and only its beginning is read, which is no line."""
+    while text := file.readline(LONGEST_LINE):
+        if len(text) == LONGEST_LINE:
+            yield f"{text[:MOST_TOLD]}\n"
+            return
+        yield text
 
 
 def _word(end: Json) -> str:

@@ -77,6 +77,7 @@ def summarise(
         "verdict": record.verdict,
         "reason": record.reason,
         "final": list(record.final),
+        "failed": list(record.failed),
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
         "counts": summary_counts(record, dict(report.count), occurrences),
@@ -183,7 +184,7 @@ def _counted(entry: dict[str, Any]) -> str:
 
 def page(summary: dict[str, Any]) -> RenderableType:
     """The summary for a terminal."""
-    good = summary["verdict"] == "finished"
+    good = summary["verdict"] == "finished" and not summary["failed"]
     head = Text()
     head.append(
         " finished " if good else f" {summary['verdict']} ",

@@ -307,6 +307,7 @@ class Engine:
         if self.record.verdict == "finished":
             self.supervisor.close()  # its trace is complete then
             self.record.final = self._final_places()
+            self.record.failed = tuple(self.partition.failed(self.record.final))
         end: dict[str, Any] = {"t": self.now, "event": "end", "why": self.record.verdict}
         if self.record.reason:
             end["reason"] = self.record.reason

@@ -123,6 +123,7 @@ class RunRecord:
         an unreachable pose, ...).
         reason: why, when not finished.
         final: the final places that hold a token at the end, when finished.
+        failed: those of them that mean that the cell has failed.
         time: simulated seconds.
         events: lines of the merged trace after the header.
         header: the header line of the merged trace.
@@ -137,6 +138,7 @@ class RunRecord:
     verdict: str = "failed"
     reason: str = ""
     final: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
     time: float = 0.0
     wall: float = 0.0
     header: dict[str, Any] = field(default_factory=dict)

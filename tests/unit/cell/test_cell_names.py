@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from helpers.small_cell import NET, TOML, write
 from pn2code.cell.divide import divide
+from pn2code.cell.final_places import failed_names
 from pn2code.cell.load import load
 from pn2code.cell.partition import ChannelKind
 from pn2code.cli.main import app
@@ -28,6 +29,14 @@ MISTAKES = {
     "final: twice by path": (FINAL, 'final = ["Finished", "Supervisor.Finished"]', "cell-value", "twice", "remove"),
     "final: a number": (FINAL, "final = [3]", "cell-value", "`final` holds `3`", ""),
     "final: a text": (FINAL, 'final = "Finished"', "cell-value", "a list of places is expected", ""),
+    "failed: misspelt": ("[primitives]", '[report]\nfailed = ["Finishd"]\n[primitives]', "cell-unknown-place",
+                         "the net has no place `Finishd`", "did you mean `Finished`?"),
+    "failed: a place that is not final": ("[primitives]", '[report]\nfailed = ["Going"]\n[primitives]', "cell-value",
+                                          "names place `Top.Supervisor.Going`, which is not a final place", "`final`"),
+    "failed: twice by path": ("[primitives]", '[report]\nfailed = ["Finished", "Supervisor.Finished"]\n[primitives]',
+                              "cell-value", "`failed` names place `Top.Supervisor.Finished` twice", "remove"),
+    "failed: a number": ("[primitives]", "[report]\nfailed = [3]\n[primitives]", "cell-value", "`failed` holds `3`",
+                         ""),
     "storage: misspelt": ("[primitives]", '[storage]\nREL = "float32"\n[primitives]', "cell-value",
                           "`REL`, which is not a colour set of the net", "did you mean `REAL`?"),
     "storage: of no reals": ("[primitives]", '[storage]\nPOSE = "float32"\n[primitives]', "cell-value",
@@ -121,6 +130,24 @@ def test_a_final_place_that_the_supervisor_never_marks(tmp_path: Path) -> None:
     (found,) = said(tmp_path, net, changed(TOML, FINAL, 'final = ["Ended"]'))
     assert (found.severity, found.code) == (Severity.WARNING, "cell-final")
     assert "no transition of the supervisor puts a token" in found.message
+
+
+def test_final_places_that_mean_failure(tmp_path: Path) -> None:
+    cell = write(
+        tmp_path,
+        toml=changed(TOML, "[primitives]", '[report]\nfailed = ["Finished"]\n[primitives]'),
+    )
+    d = Diagnostics()
+    config = load(cell, d)
+    assert config is not None
+    net = front.load(config.net_path, d)
+    assert net is not None
+    partition = divide(net, config, d)
+    assert partition is not None and not d.items, [i.message for i in d]
+    assert partition.failed_places == partition.final_places
+    assert partition.failed(["Top.Supervisor.Finished", "Over"]) == ["Top.Supervisor.Finished"]
+    assert failed_names(net, config) == {"Top.Supervisor.Finished"}
+    assert failed_names(net, None) == frozenset()
 
 
 def test_a_final_place_is_not_timed(tmp_path: Path) -> None:

@@ -84,6 +84,10 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
         (NOTED, "102.1 at 2.00 s"),
         (NOTED, "r comes close to a singularity"),
     ]
+    failed = {**said, "failed": said["final"]}
+    (tmp_path / "x/summary.json").write_text(json.dumps(failed))
+    c = chapter(tmp_path, "run", None)
+    assert (c.answer, c.findings[0].says) == (NO, "finished in Cell.Supervisor.Failed")
     (tmp_path / "x/summary.json").write_text(json.dumps({**said, "verdict": "stopped"}))
     assert chapter(tmp_path, "run", None, 1).answer == NO
 

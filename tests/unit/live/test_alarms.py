@@ -28,6 +28,18 @@ def test_a_small_clearance_is_named() -> None:
     assert len(texts) == 2 and "robot1/tool and panel are 4.0 mm apart" in texts[0]
 
 
+def test_an_end_that_is_not_wanted_is_told() -> None:
+    ends = {
+        "": {"word": "finished", "reason": "", "final": ["Over"], "failed": []},
+        "the cell has ended in Jammed": {"word": "finished", "failed": ["Jammed"]},
+        "robot.tdl:3": {"word": "stopped", "reason": "robot.tdl:3", "failed": []},
+    }
+    for text, verdict in ends.items():
+        alarms = Alarms(50.0, 0.01)
+        alarms.ended(1.0, verdict)
+        assert [e["text"] for e in alarms.news()] == [text][: bool(text)]
+
+
 def test_a_fault_is_told_once() -> None:
     alarms = Alarms(50.0, 0.01)
     alarms.fault(1.0, "", "stopped")

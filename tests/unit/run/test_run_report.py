@@ -208,6 +208,14 @@ def test_labels_of_counts_are_free(record: RunRecord) -> None:
     assert "finished" in printed and "parts" in printed
 
 
+def test_an_end_that_means_failure_is_red(record: RunRecord) -> None:
+    record.final = record.failed = ("Top.Jammed",)
+    summary = summarise(record, ReportConfig(), ROBOTS, {})
+    assert summary["failed"] == ["Top.Jammed"]
+    words = {x.text: str(x.style) for x in Console(width=200).render(page(summary))}
+    assert "red" in words[" finished "]
+
+
 def test_condition_numbers_are_given_by_what_is_counted(record: RunRecord) -> None:
     summary = summarise(record, ReportConfig(), ROBOTS, {})
     entry = {"worst": 9.0, "t": 3.0, "at_grips": [4.5, 4.5], "at_welds": [6.5] * 20, "at_none": []}
