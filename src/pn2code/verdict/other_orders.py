@@ -14,8 +14,8 @@ from itertools import islice
 
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net.conditions import conditions
 from pn2code.net.flat import FlatTransition
-from pn2code.net.guard_order import conditions
 from pn2code.net.other_orders import Asking, asking
 from pn2code.net.raising import Raising
 from pn2code.net.uses import NetVariables
