@@ -49,10 +49,11 @@ def unsure(net: FlatNet) -> tuple[Unsure, ...]:
     made = asking(net)
     if made is None:
         return ()
-    first = {q.transition: q for q in reversed((*made.questions, *made.left))}
-    return tuple(
-        Unsure(net.transitions[i], q.condition, q.beside) for i, q in sorted(first.items())
-    )
+    found: dict[int, Unsure] = {}
+    for q in (*made.questions, *made.left):
+        if q.beside is not None and q.transition not in found:
+            found[q.transition] = Unsure(net.transitions[q.transition], q.condition, q.beside)
+    return tuple(found[i] for i in sorted(found))
 
 
 def doubtful(net: FlatNet) -> tuple[Unsure, ...]:

@@ -18,16 +18,19 @@ The markings are those of the net. If nothing raises an exception in any of them
 something does, CPN Tools may stop there; it need not.
 
 What would only ask what the transition itself asks, in the order here, is left out.
+
+In the same way it is asked whether an equation gives a variable a value outside its colour set (`outside`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PVar, PWild, Symbol, Var
+from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PRecord, PVar, PWild, Symbol, Var
 from pn2code.ml.core.terms import Sequence as Several
 from pn2code.ml.core.types import BOOL, INT
 from pn2code.ml.library.datatypes import TRUE
@@ -44,6 +47,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.outside import bind_raised, holds, is_restricted, outside
 from pn2code.net.raising import Raising
 from pn2code.net.terms import TermReader, binary
 from pn2code.net.total import is_total
@@ -54,6 +58,9 @@ MOST_WAYS = 64
 _Names = frozenset[Symbol]
 
 
+Kind = Literal["order", "outside", "bind"]
+
+
 @frozen
 class Question:
     """What a transition asks that only asks, of another one.
@@ -62,13 +69,16 @@ class Question:
         transition: the index of that.
         raises: the expression that is computed.
         condition: the guard or the term that it is a part of.
-        beside: a condition of which it depends here whether it is computed.
+        kind: what there is to it: `order`, the order in which conditions are asked; `outside`, whether it gives a
+            variable a value outside its colour set (`net.outside`); `bind`, whether it raises `Bind` (`net.outside`).
+        beside: of `order`, a condition of which it depends here whether it is computed.
     """
 
     transition: int
     raises: Exp
     condition: Exp
-    beside: Exp
+    kind: Kind
+    beside: Exp | None = None
 
 
 @frozen
@@ -147,8 +157,12 @@ class _Maker:
 
     def of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         """A transition for each expression and way; None where there are too many ways."""
+        yield from self._raising_of(t)
+        yield from self._outside_of(t)
+
+    def _raising_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         asked = conditions(t, self._raising, self._uses)
-        if len(asked) < 2 or not any(c.may_raise for c in asked):
+        if not any(c.may_raise for c in asked):
             return
         sources = list(self._sources(t))
         for i, c in enumerate(asked):
@@ -156,13 +170,75 @@ class _Maker:
                 ways = _ways(self._needed(t, e), sources)
                 if ways is None:
                     beside = next(x for x in asked if x is not c)
-                    yield None, Question(t.index, e, c.text, beside.text)
+                    yield None, Question(t.index, e, c.text, "order", beside.text)
                     continue
                 for way in ways:
                     hiding = self._hiding(t, asked, i, way)
-                    if hiding is not None:
-                        question = Question(t.index, e, c.text, hiding.text)
-                        yield self._transition(t, way, e), question
+                    is_tested = c.guard is not None and e is t.guards[c.guard]
+                    is_open = is_tested and not any(self._catches(t, s) for s in way)
+                    if hiding is None and not is_open:
+                        continue
+                    asks = bind_raised(e) if is_open else e
+                    kind: Kind = "bind" if hiding is None else "order"
+                    beside_it = None if hiding is None else hiding.text
+                    question = Question(t.index, e, c.text, kind, beside_it)
+                    yield self._transition(t, way, asks), question
+
+    def _catches(self, t: FlatTransition, s: _Source) -> bool:
+        """Whether `Bind` only means to CPN Tools that there is no binding with what a source gives.
+
+        It does where any token is tried, and where an equation binds; not where a token is found by a known part of it.
+        """
+        if s.term is None:
+            return s.guard is not None
+        pattern = term_of(t, *s.term).pattern
+        return not isinstance(pattern, PRecord) or all(
+            isinstance(x, PVar) for _, x in pattern.fields
+        )
+
+    def _outside_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
+        sources: list[_Source] = []
+        for i, guard in enumerate(t.guards):
+            sides = binary(guard, ("=",))
+            for side, value in (sides, sides[::-1]) if sides is not None else ():
+                pattern = self._reader.pattern(side)
+                names = frozenset(pattern_variables(pattern)) & frozenset(t.variables)
+                variables = sorted(
+                    (
+                        s
+                        for s in names
+                        if is_restricted(s.colset) and not self._is_held(t, s, value)
+                    ),
+                    key=lambda s: s.uid,
+                )
+                needed = self._needed(t, value)
+                if pattern is None or not variables or needed & names:
+                    continue
+                sources = sources or list(self._sources(t))
+                ways = _ways(needed, [s for s in sources if s.guard != i])
+                question = Question(t.index, guard, guard, "outside")
+                if ways is None:
+                    yield None, question
+                for way in ways or ():
+                    known = names.union(*(s.binds for s in way))
+                    others = [
+                        g
+                        for j, g in enumerate(t.guards)
+                        if j != i and self._needed(t, g) <= known and not self._raising.raise_in(g)
+                    ]
+                    e = outside(pattern, value, variables, others)
+                    yield self._transition(t, way, e), question
+
+    def _is_held(self, t: FlatTransition, s: Symbol, value: Exp) -> bool:
+        """Whether a value outside is nothing to CPN Tools either: a token with it is wanted, and there is none."""
+        if isinstance(value, Var) and value.symbol.colset == s.colset:
+            return True
+        return any(
+            holds(term.pattern, self._net.places[arc.place].colset, s)
+            for arc in t.arcs
+            if arc.kind in TAKING and arc.inscription is not None
+            for term in arc.inscription.terms
+        )
 
     def _needed(self, t: FlatTransition, *texts: Exp | None) -> _Names:
         return frozenset(self._uses.of(*texts)) & frozenset(t.variables)
@@ -220,7 +296,7 @@ class _Maker:
                 return c
         if terms.union(guards) <= set(met):
             return None
-        return next(c for i, c in enumerate(asked) if i != which)
+        return next((c for i, c in enumerate(asked) if i != which), None)
 
     def _always_matches(self, t: FlatTransition, c: Condition) -> bool:
         """Whether a token of a place always does: then it matters only that there is one. An equation does."""
