@@ -60,7 +60,7 @@ def asked(guard: str, arcs: str) -> list[tuple[str, str]]:
 @pytest.mark.parametrize(
     ("guard", "arcs", "is_bound"),
     [
-        # In the first five the engine finds a binding, or raises the exception behind it.
+        # In the first six the engine finds a binding, or raises the exception behind it.
         ("s = n + 5", "A : n", True),
         ("s = n + 5, s > 1", "A : n", True),
         ("s = n + 5, 6 div (s - 6) > 1", "A : n", True),
@@ -85,11 +85,12 @@ def test_a_value_outside_its_colour_set(guard: str, arcs: str, is_bound: bool) -
 @pytest.mark.parametrize(
     ("guard", "arcs", "is_raised"),
     [
-        # The engine stops with Bind in the first four alone.
+        # The engine stops with Bind in the first five alone.
         ("first (if s > 0 then [] else [1]) > 0", "A : n", True),
         ("first [] > 0", "A : n", True),
         ("first [] > 0, n > 0", "A : n", True),
         ("n > 5, first [] > 0", "A : n", True),
+        ("first l > 0", "D : (2, l)", True),  # it is found by a part that is known
         ("first l > 0", "P : l", False),
         ("m = first [], n > m", "A : n", False),
         ("n > 0, m = first l", "A : n|P : l", False),

@@ -427,6 +427,7 @@ def _orders_row(net: FlatNet, orders: OtherOrders | None) -> dict[str, Any] | No
         t, trace = raised.transition, raised.trace
         row = {
             "transition": None if t is None else net.transitions[t].name,
+            "kind": raised.kind,
             "raises": raised.text,
             "message": raised.message,
             "node": raised.node,
