@@ -24,10 +24,9 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis, outcome, why_disabled
-from pn2code.verify.answers.outcome import error_text, good_of
+from pn2code.verify.answers.outcome import does, error_text, good_of
 from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
-from pn2code.verify.answers.reasons import raises
 from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
@@ -108,7 +107,7 @@ def full(said: Said) -> str:
         orders = found.orders.raised if found.orders is not None else None
         if orders is not None and orders.trace is not None:
             path = _told(said, orders.trace, f"marking {orders.node}, where CPN Tools may stop")
-            parts.append(f"{path}\n  then `{orders.text}` {raises(orders.message)}")
+            parts.append(f"{path}\n  then `{orders.text}` {does(orders)}")
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
     timed = "\n".join(_durations(said)).strip("\n")
@@ -493,7 +492,10 @@ def _path_lines(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     orders = found.orders.raised if found.orders is not None else None
     if orders is not None and orders.trace is not None and all(i.kind != "bad" for i in wrong):
         lines = _last(said, orders.trace.file, "to where CPN Tools may stop", most - 1)
-        return [*lines, f"  then `{orders.text}` {raises(orders.message)}"]
+        return [
+            *lines,
+            f"  then `{orders.text}` {does(orders)}",
+        ]
     for item in wrong:
         if item.file is not None:
             what = f"for `{item.name}`"

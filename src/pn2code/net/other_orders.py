@@ -18,19 +18,23 @@ The markings are those of the net. If nothing raises an exception in any of them
 something does, CPN Tools may stop there; it need not.
 
 What would only ask what the transition itself asks, in the order here, is left out.
+
+In the same way it is asked whether an equation gives a variable a value outside its colour set (`outside`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PVar, PWild, Symbol, Var
+from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PRecord, PVar, PWild, Symbol, Var
 from pn2code.ml.core.terms import Sequence as Several
 from pn2code.ml.core.types import BOOL, INT
 from pn2code.ml.library.datatypes import TRUE
+from pn2code.net.conditions import TAKING, Condition, conditions, term_of, texts_of
 from pn2code.net.flat import (
     ArcInscription,
     ArcKind,
@@ -43,7 +47,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
-from pn2code.net.guard_order import Condition, conditions
+from pn2code.net.outside import bind_raised, holds, is_restricted, outside
 from pn2code.net.raising import Raising
 from pn2code.net.terms import TermReader, binary
 from pn2code.net.total import is_total
@@ -51,16 +55,30 @@ from pn2code.net.uses import NetVariables, pattern_variables
 
 MOST_WAYS = 64
 """Sets of arcs and equations that are looked at for one expression."""
-_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 _Names = frozenset[Symbol]
+
+
+Kind = Literal["order", "outside", "bind"]
 
 
 @frozen
 class Question:
-    """What a transition asks that only asks: an expression of another one, by its index."""
+    """What a transition asks that only asks, of another one.
+
+    Args:
+        transition: the index of that.
+        raises: the expression that is computed.
+        condition: the guard or the term that it is a part of.
+        kind: what there is to it: `order`, the order in which conditions are asked; `outside`, whether it gives a
+            variable a value outside its colour set (`net.outside`); `bind`, whether it raises `Bind` (`net.outside`).
+        beside: of `order`, a condition of which it depends here whether it is computed.
+    """
 
     transition: int
     raises: Exp
+    condition: Exp
+    kind: Kind
+    beside: Exp | None = None
 
 
 @frozen
@@ -71,13 +89,13 @@ class Asking:
         net: both.
         own: how many transitions are those of the net.
         questions: what the others ask, in their order.
-        left: transitions of which not all is asked, since there are too many ways to do so.
+        left: what is not asked, since there are too many ways to do so.
     """
 
     net: FlatNet
     own: int
     questions: tuple[Question, ...]
-    left: tuple[int, ...]
+    left: tuple[Question, ...]
 
     def question(self, transition: int) -> Question | None:
         """What a transition of `net` asks; None: it is one of the net's own."""
@@ -114,20 +132,20 @@ def asking(net: FlatNet) -> Asking | None:
     own = len(net.transitions)
     more: list[FlatTransition] = []
     questions: list[Question] = []
-    left: list[int] = []
+    left: list[Question] = []
     for t in net.transitions:
-        for found, raises in maker.of(t):
+        for found, question in maker.of(t):
             if found is None:
-                left.append(t.index)
+                left.append(question)
                 continue
             index = own + len(more)
             name = f"{t.name} (asked {len(more) + 1})"
             more.append(replace(found, index=index, name=name, short=name))
-            questions.append(Question(t.index, raises))
+            questions.append(question)
     if not more and not left:
         return None
     whole = replace(net, transitions=(*net.transitions, *more))
-    return Asking(whole, own, tuple(questions), tuple(dict.fromkeys(left)))
+    return Asking(whole, own, tuple(questions), tuple(left))
 
 
 class _Maker:
@@ -137,21 +155,90 @@ class _Maker:
         self._uses = uses
         self._reader = TermReader(net.program, uses, Diagnostics())
 
-    def of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Exp]]:
+    def of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         """A transition for each expression and way; None where there are too many ways."""
+        yield from self._raising_of(t)
+        yield from self._outside_of(t)
+
+    def _raising_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         asked = conditions(t, self._raising, self._uses)
-        if len(asked) < 2 or not any(c.may_raise for c in asked):
+        if not any(c.may_raise for c in asked):
             return
         sources = list(self._sources(t))
         for i, c in enumerate(asked):
             for e in self._parts(t, c) if c.may_raise else ():
                 ways = _ways(self._needed(t, e), sources)
                 if ways is None:
-                    yield None, e
+                    beside = next(x for x in asked if x is not c)
+                    yield None, Question(t.index, e, c.text, "order", beside.text)
                     continue
                 for way in ways:
-                    if not self._is_asked(t, asked[:i], way):
-                        yield self._transition(t, way, e), e
+                    hiding = self._hiding(t, asked, i, way)
+                    is_tested = c.guard is not None and e is t.guards[c.guard]
+                    is_open = is_tested and not any(self._catches(t, s) for s in way)
+                    if hiding is None and not is_open:
+                        continue
+                    asks = bind_raised(e) if is_open else e
+                    kind: Kind = "bind" if hiding is None else "order"
+                    beside_it = None if hiding is None else hiding.text
+                    question = Question(t.index, e, c.text, kind, beside_it)
+                    yield self._transition(t, way, asks), question
+
+    def _catches(self, t: FlatTransition, s: _Source) -> bool:
+        """Whether `Bind` only means to CPN Tools that there is no binding with what a source gives.
+
+        It does where any token is tried, and where an equation binds; not where a token is found by a known part of it.
+        """
+        if s.term is None:
+            return s.guard is not None
+        pattern = term_of(t, *s.term).pattern
+        return not isinstance(pattern, PRecord) or all(
+            isinstance(x, PVar) for _, x in pattern.fields
+        )
+
+    def _outside_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
+        sources: list[_Source] = []
+        for i, guard in enumerate(t.guards):
+            sides = binary(guard, ("=",))
+            for side, value in (sides, sides[::-1]) if sides is not None else ():
+                pattern = self._reader.pattern(side)
+                names = frozenset(pattern_variables(pattern)) & frozenset(t.variables)
+                variables = sorted(
+                    (
+                        s
+                        for s in names
+                        if is_restricted(s.colset) and not self._is_held(t, s, value)
+                    ),
+                    key=lambda s: s.uid,
+                )
+                needed = self._needed(t, value)
+                if pattern is None or not variables or needed & names:
+                    continue
+                sources = sources or list(self._sources(t))
+                ways = _ways(needed, [s for s in sources if s.guard != i])
+                question = Question(t.index, guard, guard, "outside")
+                if ways is None:
+                    yield None, question
+                for way in ways or ():
+                    known = names.union(*(s.binds for s in way))
+                    others = [
+                        g
+                        for j, g in enumerate(t.guards)
+                        if j != i and self._needed(t, g) <= known and not self._raising.raise_in(g)
+                    ]
+                    e = outside(pattern, value, variables, others)
+                    yield self._transition(t, way, e), question
+
+    def _is_held(self, t: FlatTransition, s: Symbol, value: Exp) -> bool:
+        """Whether a value outside is nothing to CPN Tools either: a token with it is wanted, and there is none."""
+        if isinstance(value, Var) and value.symbol.colset == s.colset:
+            return True
+        return any(
+            holds(term.pattern, self._net.places[arc.place].colset, s)
+            for arc in t.arcs
+            if arc.kind in TAKING and arc.inscription is not None
+            for term in arc.inscription.terms
+        )
 
     def _needed(self, t: FlatTransition, *texts: Exp | None) -> _Names:
         return frozenset(self._uses.of(*texts)) & frozenset(t.variables)
@@ -165,14 +252,14 @@ class _Maker:
             texts = [*sides] if may_bind else [guard]
         else:
             assert c.term is not None
-            term = _term(t, *c.term)
-            texts = _texts(term)
+            term = term_of(t, *c.term)
+            texts = texts_of(term)
         return [e for e in texts if self._raising.raise_in(e)]
 
     def _sources(self, t: FlatTransition) -> Iterator[_Source]:
         found: set[Symbol] = set()
         for i, arc in enumerate(t.arcs):
-            if arc.kind not in _TAKING or arc.inscription is None:
+            if arc.kind not in TAKING or arc.inscription is None:
                 continue
             for j, term in enumerate(arc.inscription.terms):
                 names = frozenset(pattern_variables(term.pattern))
@@ -191,28 +278,34 @@ class _Maker:
             if isinstance(step, BindAll):
                 yield _Source(step, frozenset({step.symbol}), frozenset())
 
-    def _is_asked(self, t: FlatTransition, before: Sequence[Condition], way: _Way) -> bool:
-        """Whether the transition itself asks this, wherever the way leads: nothing before it can keep it from that."""
+    def _hiding(
+        self, t: FlatTransition, asked: Sequence[Condition], which: int, way: _Way
+    ) -> Condition | None:
+        """What may keep the transition itself from asking this, or asks it with other values; None: nothing may."""
         terms = {s.term for s in way if s.term is not None}
         guards = {s.guard for s in way if s.guard is not None}
         names = frozenset[Symbol]().union(*(s.binds | s.needs for s in way))
+        constant = self._demanded(t, way)
         met: list[tuple[int, int] | int | None] = []
-        for c in before:
+        for c in asked[:which]:
             if c.term in terms or (c.guard is not None and c.guard in guards):
                 met.append(c.term if c.term is not None else c.guard)
-            elif c.term is None or c.binds & names or not self._always_matches(t, c):
-                return False
-        return terms.union(guards) <= set(met)
+            elif c.term is not None and t.arcs[c.term[0]].place in constant:
+                pass  # it is asked there, too
+            elif c.binds & names or c.may_fail or c.may_raise or not self._always_matches(t, c):
+                return c
+        if terms.union(guards) <= set(met):
+            return None
+        return next((c for i, c in enumerate(asked) if i != which), None)
 
     def _always_matches(self, t: FlatTransition, c: Condition) -> bool:
-        """Whether a token of a place always does: then it matters only that there is one."""
-        assert c.term is not None
-        term, place = _term(t, *c.term), self._net.places[t.arcs[c.term[0]].place]
+        """Whether a token of a place always does: then it matters only that there is one. An equation does."""
+        if c.term is None:
+            return True
+        term, place = term_of(t, *c.term), self._net.places[t.arcs[c.term[0]].place]
         pattern = term.pattern
         return (
-            not c.may_fail
-            and not c.may_raise
-            and isinstance(pattern, PVar)
+            isinstance(pattern, PVar)
             and pattern.symbol.colset == place.colset
             and not place.colset.timed
             and _constant(term) == 1
@@ -220,11 +313,9 @@ class _Maker:
 
     def _transition(self, t: FlatTransition, way: _Way, e: Exp) -> FlatTransition:
         arcs = [a for a in t.arcs if a.kind is ArcKind.INHIBITOR]
-        places = {t.arcs[s.term[0]].place for s in way if s.term is not None}
-        if places:
-            constant = self._constant(t) - places
-            arcs += [_input(a) for a in t.arcs if a.kind in _TAKING and a.place in constant]
-            places |= constant
+        constant = self._demanded(t, way)
+        arcs += [_input(a) for a in t.arcs if a.kind in TAKING and a.place in constant]
+        places = constant.union(_places(t, way))
         plan: list[BindStep] = []
         tokens: list[Symbol] = []
         for place in self._filled(t):
@@ -254,12 +345,17 @@ class _Maker:
             code=None,
         )
 
+    def _demanded(self, t: FlatTransition, way: _Way) -> frozenset[int]:
+        """The places that are looked at before any token is taken for a way."""
+        places = _places(t, way)
+        return self._constant(t) - places if places else frozenset()
+
     def _constant(self, t: FlatTransition) -> frozenset[int]:
         """The places of which all that is wanted is known without variables, and does not raise an exception."""
         own, others = set[int](), set[int]()
         for arc in t.arcs:
-            if arc.kind in _TAKING and arc.inscription is not None:
-                texts = [e for x in arc.inscription.terms for e in _texts(x)]
+            if arc.kind in TAKING and arc.inscription is not None:
+                texts = [e for x in arc.inscription.terms for e in texts_of(x)]
                 is_known = all(map(is_total, texts)) and not self._needed(t, *texts)
                 (own if is_known else others).add(arc.place)
         return frozenset(own - others)
@@ -270,7 +366,7 @@ class _Maker:
             dict.fromkeys(
                 a.place
                 for a in t.arcs
-                if a.kind in _TAKING
+                if a.kind in TAKING
                 and a.inscription is not None
                 and not self._net.places[a.place].colset.timed
                 and any(not x.whole and _constant(x) >= 1 for x in a.inscription.terms)
@@ -278,7 +374,7 @@ class _Maker:
         )
 
     def _any_token(self, t: FlatTransition, place: int) -> FlatArc:
-        arc = next(a for a in t.arcs if a.place == place and a.kind in _TAKING)
+        arc = next(a for a in t.arcs if a.place == place and a.kind in TAKING)
         assert arc.inscription is not None
         token, span = _token(self._net, place), arc.inscription.value.span
         value, pattern = Var(token, token.type, span), PVar(token, token.type, span)
@@ -324,6 +420,10 @@ def _ordered(sources: Sequence[_Source]) -> _Way | None:
     return tuple(way)
 
 
+def _places(t: FlatTransition, way: _Way) -> set[int]:
+    return {t.arcs[s.term[0]].place for s in way if s.term is not None}
+
+
 def _token(net: FlatNet, place: int) -> Symbol:
     """A variable for any token of a place; no other one has this number."""
     colset = net.places[place].colset
@@ -332,7 +432,7 @@ def _token(net: FlatNet, place: int) -> Symbol:
 
 def _taking(t: FlatTransition, arc: int, index: int) -> FlatArc:
     """An arc that takes one term of another one; what several want together of a place is never asked."""
-    term = _term(t, arc, index)
+    term = term_of(t, arc, index)
     value = Several((term.value,), term.value.type, term.value.span)
     coefficient = term.coefficient if _constant(term) >= 0 else _one(term.value.span)
     return _with_term(t.arcs[arc], replace(term, coefficient=coefficient, value=value))
@@ -348,16 +448,6 @@ def _with_term(arc: FlatArc, term: Term) -> FlatArc:
 
 def _input(arc: FlatArc) -> FlatArc:
     return replace(arc, kind=ArcKind.INPUT)
-
-
-def _texts(term: Term) -> list[Exp]:
-    return [term.coefficient, term.value, *([] if term.delay is None else [term.delay])]
-
-
-def _term(t: FlatTransition, arc: int, index: int) -> Term:
-    inscription = t.arcs[arc].inscription
-    assert inscription is not None
-    return inscription.terms[index]
 
 
 def _constant(term: Term) -> int:

@@ -14,9 +14,10 @@ from itertools import islice
 
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net.conditions import conditions
 from pn2code.net.flat import FlatTransition
-from pn2code.net.guard_order import conditions
 from pn2code.net.other_orders import Asking, asking
+from pn2code.net.outside import RAISED
 from pn2code.net.raising import Raising
 from pn2code.net.uses import NetVariables
 from pn2code.semantics.game.every_order import raises_in_every_order
@@ -25,7 +26,7 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers.culprit import MOST_STEPS
 from pn2code.verify.answers.path import play
-from pn2code.verify.answers.reasons import raises
+from pn2code.verify.answers.reasons import OUTSIDE, raises
 from pn2code.verify.codes import OTHER_ORDER
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
@@ -71,6 +72,14 @@ def look(
 def _asked(
     opened: OpenNet, made: Asking, found: Exploration, limits: Limits, options: ExploreOptions
 ) -> OtherOrders:
+    found_there = _looked(opened, made, found, limits, options)
+    may_bind = any(q.kind == "outside" for q in (*made.questions, *made.left))
+    return replace(found_there, more=bool(found_there.why) and may_bind)
+
+
+def _looked(
+    opened: OpenNet, made: Asking, found: Exploration, limits: Limits, options: ExploreOptions
+) -> OtherOrders:
     options.stage("asking conditions in other orders ...")
     most = limits.max_states if found.complete else max(found.nodes, 1)
     own = replace(limits, max_states=most, graph=False, traces=0)
@@ -95,9 +104,12 @@ def _asked(
         t = index if question is None else question.transition
         text = "" if question is None else " ".join(question.raises.span.text.split())
         trace = again.error_trace
-        return OtherOrders(
-            "error", RaisedThere(t, text, error["message"], error.get("node"), trace)
-        )
+        message = error["message"]
+        if question is not None and RAISED in message:
+            message = OUTSIDE if question.kind == "outside" else "Bind"
+        kind = "order" if question is None else question.kind
+        there = RaisedThere(t, text, message, error.get("node"), trace, kind)
+        return OtherOrders("error", there)
     if made.left:
         return OtherOrders("ways")
     is_all = again.seen.markings or (not found.complete and again.why == "states")
@@ -160,10 +172,20 @@ def tell(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     notes: list[str | Note] = []
     if raised.trace is not None:
         notes.append(f"{raised.trace.steps} steps lead to that marking: {raised.trace.file}")
+    if raised.kind == "outside":
+        d.warning(
+            OTHER_ORDER,
+            f"CPN Tools may find other bindings of {where} in a reachable marking: `{raised.text}` {OUTSIDE}, "
+            "which CPN Tools does not look at",
+            t.origin if t is not None else Origin(opened.flat.file),
+            notes=notes,
+            hint="add a condition that the value is one of the colour set, or give the variable a larger one",
+        )
+        return
     d.warning(
         OTHER_ORDER,
-        f"CPN Tools may stop in a reachable marking: of {where} it may compute `{raised.text}` first, "
-        f"which {raises(raised.message)}",
+        f"CPN Tools may stop in a reachable marking: of {where} it may compute `{raised.text}`"
+        f"{' first' if raised.kind == 'order' else ''}, which {raises(raised.message)}",
         t.origin if t is not None else Origin(opened.flat.file),
         notes=notes,
         hint="put both conditions into one: `a andalso b`, or `m = (if a then b else c)`",

@@ -262,7 +262,7 @@ def conclude(
     if outcome.may_stop(found):  # a run that shows something may be longer than what CPN Tools does
         answers = tuple(
             replace(a, answer="inconclusive", why=clause("order"), evidence=None)
-            if kind(a) == "good"
+            if kind(a) == "good" or (found.orders is not None and found.orders.more)
             else a
             for a in answers
         )

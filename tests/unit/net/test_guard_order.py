@@ -19,7 +19,7 @@ net N
   colset NL = product INT * L;
   colset SMALL = int with 0..3;
   var l : L;
-  var n, m, k : INT;
+  var n, m, k, x0, x1, x2, x3, x4, x5, x6, x7, x8 : INT;
   var s : SMALL;
   val base = 4;
   fun first (x :: _) = x | first [] = 0;
@@ -38,6 +38,10 @@ net N
 %s
       out O : 1
 """
+
+
+MANY = "P : l|" + "|".join(f"A : x{i}|C : x{i}" for i in range(9))
+"""In more ways than are looked at."""
 
 
 def net(guard: str, arcs: str = "P : l|A : n") -> str:
@@ -63,6 +67,10 @@ def net(guard: str, arcs: str = "P : l|A : n") -> str:
         ("m > 5, m = hd l", "P : l|C : m"),
         ("m = hd l", "A : m|P : l|C : m"),
         ("n > 1", "R : (n, l)|P : l|C : hd l"),
+        ("hd l > 0", "A : n|R : (n, l)"),
+        ("hd l > 0", "A : n|C : n|P : l"),  # the places may have nothing in common
+        ("true", "A : n|C : n|P : l|C : hd l"),
+        (" + ".join(f"x{i}" for i in range(9)) + " > hd l", MANY),
     ],
 )
 def test_what_may_raise_an_exception_elsewhere(guard: str, arcs: str) -> None:
@@ -76,6 +84,7 @@ def test_what_may_raise_an_exception_elsewhere(guard: str, arcs: str) -> None:
         ("hd l > 0", "P : l"),
         ("hd l > 0, length l > 0", "P : l"),
         ("m = hd l", "P : l"),
+        ("hd l > 0", "P : l|C : 3"),  # what is wanted without variables is looked at before
         ("k = n + 1, m = hd l", "A : n|P : l"),
         ("m = hd l, m > 0", "P : l"),
         ("k = hd l, m = k + 1", "P : l"),

@@ -16,7 +16,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raises
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.result import Exploration, Known
+from pn2code.verify.exploring.result import Exploration, Known, RaisedThere
 
 Word = Literal["yes", "no", "inconclusive"]
 _MORE = {
@@ -142,10 +142,25 @@ def order_text(net: FlatNet, found: Exploration) -> str:
     name = (
         "the net" if raised.transition is None else f"`{net.transitions[raised.transition].name}`"
     )
+    if raised.kind == "outside":
+        return (
+            f"CPN Tools may find other bindings in a reachable marking: `{raised.text}` of {name} {raised.message}, "
+            "which CPN Tools does not look at; here it is none."
+        )
+    if raised.kind == "bind":
+        return (
+            f"CPN Tools may stop in a reachable marking: `{raised.text}` of {name} {raises(raised.message)}; here that "
+            "means that there is no binding."
+        )
     return (
         f"CPN Tools may stop in a reachable marking: if it asks `{raised.text}` of {name} before other conditions, "
         f"that {raises(raised.message)}; {here}."
     )
+
+
+def does(there: RaisedThere) -> str:
+    """What is wrong with the text of it, behind that."""
+    return there.message if there.kind == "outside" else raises(there.message)
 
 
 def _in_order(net: FlatNet, found: Exploration) -> str:

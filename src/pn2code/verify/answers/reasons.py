@@ -69,6 +69,9 @@ def _no_exception(message: str) -> str:
     return _NO_EXCEPTIONS.get(message, "")
 
 
+OUTSIDE = "gives a variable a value outside its colour set"
+
+
 def raises(message: str) -> str:
     """What is wrong, behind what does it: `raises `Div``, `puts more tokens into a place than there is room for`."""
     return _no_exception(message) or f"raises {raised(message)}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
@@ -133,13 +133,15 @@ class Known:
 
 @frozen
 class RaisedThere:
-    """An exception that CPN Tools may raise in a reachable marking, where nothing is raised here.
+    """What CPN Tools may do in a reachable marking, and is not done here: raise an exception, or find other bindings.
 
     Args:
         transition: of which conditions are asked, by index.
         text: what is computed; "": not known.
         message: the exception.
         node: the marking; `trace`: the run to it; None: they are not known.
+        kind: `outside`: nothing is raised, but `text` gives a variable a value outside its colour set; `bind`: it is
+            raised here, too, but means that there is no binding (`net.outside`).
     """
 
     transition: int | None
@@ -147,6 +149,7 @@ class RaisedThere:
     message: str
     node: int | None
     trace: Trace | None
+    kind: Literal["order", "outside", "bind"] = "order"
 
 
 @frozen
@@ -157,10 +160,12 @@ class OtherOrders:
         why: "": nothing raises an exception in any order; "error": something does; else why that is not known:
             one of those of `Exploration`, "ways" (there are too many), "truncated".
         raised: of "error".
+        more: whether CPN Tools might find other bindings: then what is wrong here need not be so there.
     """
 
     why: str
     raised: RaisedThere | None = None
+    more: bool = False
 
 
 @frozen
@@ -422,6 +427,7 @@ def _orders_row(net: FlatNet, orders: OtherOrders | None) -> dict[str, Any] | No
         t, trace = raised.transition, raised.trace
         row = {
             "transition": None if t is None else net.transitions[t].name,
+            "kind": raised.kind,
             "raises": raised.text,
             "message": raised.message,
             "node": raised.node,
