@@ -280,7 +280,7 @@ class Look:
         )
 
     def _elsewhere(self, leg: Leg) -> str:
-        """The branches in which a joint move to a pose could end besides, if nobody has chosen one; "": there is none."""
+        """The branches in which a joint move to a pose could end besides, if nobody has chosen one; "": none."""
         robot = self.cell.robot(leg.robot)
         if not isinstance(leg.command, MoveJoint) or robot.branch is not None or robot.axes:
             return ""
