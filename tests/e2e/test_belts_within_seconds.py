@@ -90,3 +90,21 @@ def test_what_may_not_come_is_no_yes(tmp_path: Path) -> None:
     far = belt_cell.NET.replace("val infeed = at (1500.0,", "val infeed = at (9500.0,")
     cell = belt_cell.belt_cell(tmp_path / "far", net=far)
     assert within(cell, 10_000, 3)["answer"] != "yes"
+
+
+@pytest.mark.bullet
+def test_an_answer_that_a_belt_may_make_late_is_no_yes(tmp_path: Path) -> None:
+    """It was: in time, with a latest answer far beyond the limit. A run stopped there."""
+    toml = belt_cell.TOML.replace('["Finished"]', '["Finished"]\nreply_timeout_s = 20', 1)
+    cell = belt_cell.belt_cell(tmp_path / "cell", toml=toml.replace("speed = 0.25", "speed = 0.02"))
+    done = CliRunner().invoke(app, ["verify", str(cell), "--durations", "--json"])
+    assert done.exit_code == 3, done.output
+    found = json.loads(done.stdout)
+    (check,) = (x for x in found["controller"] if x["check"] == "in-time")
+    assert check["answer"] == "unknown"
+    (late,) = found["durations"]["layouts"][0]["cycle"]["late"]
+    assert "feeder` may come as late as after 62.089 s" in late
+    assert "reply_timeout_s (20 s)" in late
+    options = RunOptions(tmp_path / "run", backend="fake", looks=False, checked=False)
+    result = run_cell(cell, options, Diagnostics())
+    assert result is not None and "feeder has not answered" in result.record.reason

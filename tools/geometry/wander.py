@@ -201,6 +201,7 @@ def _walk(
             float(step),
             look(),
             kinds={a.executor.robot.name: a.kind for a in arms.values() if a.kind is not None},
+            calm=[a.executor.robot.name for a in arms.values() if not a.turning()],
         )
         if found.fault is not None:
             return found.fault.message

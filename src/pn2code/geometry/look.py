@@ -28,6 +28,8 @@ from pn2code.geometry.where import stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.commands import MoveJoint
+from pn2code.robot.motion import other_branches
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 
@@ -251,7 +253,7 @@ class Look:
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
             if apart.outcome == "touch" and answer != "no":
-                answer, why = "no", touch_in_words(apart) + what
+                answer, why = "no", touch_in_words(apart) + what + self._elsewhere(leg)
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
         for hurry, words_ in (
@@ -276,6 +278,18 @@ class Look:
             scene.where,
             self._run(found, met) if answer != "yes" else None,
         )
+
+    def _elsewhere(self, leg: Leg) -> str:
+        """The branches in which a joint move to a pose could end besides, if nobody has chosen one; "": none."""
+        robot = self.cell.robot(leg.robot)
+        if not isinstance(leg.command, MoveJoint) or robot.branch is not None or robot.axes:
+            return ""
+        kinematics = robot.kinematics
+        here = kinematics.branch_of(leg.end.q)
+        others = other_branches(
+            kinematics, kinematics.forward(leg.end.q), here, kinematics.arm_angle_of(leg.end.q)
+        )
+        return f"; it ends in branch {here}{others}" if "chooses" in others else ""
 
     # --- pairs -----------------------------------------------------------------------------------
 

@@ -77,11 +77,18 @@ class Sweeper:
 
     def _of_two(self, a: Track, b: Track) -> Measure:
         self._show((*a.parts, *b.parts))
+        # What stands on a turntable that stands, too, does not go with a joint move of the arm.
+        free = {x.robot for x in (a, b) if x.leg.kind == "ptp"}
+        calm = {x.robot for x in (a, b) if x.is_calm}
 
         def measure(q_a: Array, q_b: Array, limit: float) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
-            return self._backend.pairs("robots", a.robot, limit, b.robot)
+            found = self._backend.pairs("robots", a.robot, limit, b.robot)
+            return [
+                replace(x, stands=True) if free and free <= calm.intersection(x.rides) else x
+                for x in found
+            ]
 
         return measure
 

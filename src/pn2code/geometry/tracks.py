@@ -22,6 +22,7 @@ from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.executor import turned_by
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
 from pn2code.robot.placed_links import placed_links
@@ -164,6 +165,12 @@ class Track:
     def robot(self) -> str:
         """Whose it is."""
         return self.leg.robot
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether its turntables stand meanwhile."""
+        assert self.leg.path is not None
+        return not turned_by(self.shape.robot, self.leg.path)
 
     @property
     def trouble(self) -> str:

@@ -225,6 +225,9 @@ def _shape(geometry: Any, folder: Path, store: Meshes) -> tuple[int, list[float]
             case "sphere":
                 radius = _numbers(shape.get("radius", ""), 1)
                 return (store.sphere(radius[0]), ones) if radius else (-1, ones)
+            case "capsule":
+                both = _numbers(f"{shape.get('radius')} {shape.get('length')}", 2)
+                return (store.capsule(both[0], both[1]), ones) if both else (-1, ones)
     return -1, ones
 
 

@@ -55,6 +55,10 @@ class Meshes:
         """A ball around the origin."""
         return self._once(("sphere", radius), lambda: _ball(radius))
 
+    def capsule(self, radius: float, length: float) -> int:
+        """A capsule along z around the origin; `length` is that without its round ends."""
+        return self._once(("capsule", radius, length), lambda: _ball(radius, apart=length))
+
     def mesh(self, mesh: Mesh) -> int:
         """Triangles that are there already."""
         return self._add(*_of(mesh))
@@ -99,15 +103,22 @@ def _of(mesh: Mesh) -> tuple[Numbers, Numbers]:
     return merged(np.array(mesh.triangles).reshape(-1, 3))
 
 
-def _ball(radius: float, rings: int = 12) -> tuple[Numbers, Numbers]:
+def _ball(radius: float, rings: int = 12, apart: float = 0.0) -> tuple[Numbers, Numbers]:
+    """Its two halves may be apart, with a mantle between them."""
+    angles = [np.pi * i / rings for i in range(rings + 1)]
+    shifts = [0.0] * len(angles)
+    if apart:
+        half = rings // 2 + 1
+        angles[half:half] = [np.pi / 2.0]
+        shifts = [apart / 2.0] * half + [-apart / 2.0] * half
     points, triangles = [], []
-    for i in range(rings + 1):
+    for a, shift in zip(angles, shifts, strict=True):
         for k in range(2 * rings):
-            a, b = np.pi * i / rings, np.pi * k / rings
-            points.append((np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)))
-    for i in range(rings):
+            b = np.pi * k / rings
+            x, y, z = np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)
+            points.append((radius * x, radius * y, radius * z + shift))
+    for i in range(len(angles) - 1):
         for k in range(2 * rings):
             p, q = i * 2 * rings + k, i * 2 * rings + (k + 1) % (2 * rings)
             triangles += [(p, p + 2 * rings, q), (q, p + 2 * rings, q + 2 * rings)]
-    corners = np.array(points)[np.array(triangles).reshape(-1)] * radius
-    return merged(corners)
+    return merged(np.array(points)[np.array(triangles).reshape(-1)])

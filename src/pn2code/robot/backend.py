@@ -34,6 +34,7 @@ class Clearance:
         point: where, on `a`, in the world; other: the nearest point on `b`.
         stands: `a` stands on `b`, so the overlap is permitted on joint moves as well.
         second: between robots, the other one.
+        rides: the robots of which only a turntable, or what stands on it, is near.
     """
 
     kind: ClearanceKind
@@ -46,6 +47,7 @@ class Clearance:
     other: tuple[float, float, float] = (0.0, 0.0, 0.0)
     stands: bool = False
     second: str = ""
+    rides: tuple[str, ...] = ()
 
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""

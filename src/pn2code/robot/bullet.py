@@ -175,6 +175,7 @@ class BulletBackend:
         self._q: dict[str, tuple[float, ...]] = {}
         self._arms: dict[str, _Side] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
+        self._plates = {f"{r.name}/{a.name}" for r in cell.robots for a in r.axes.tables}
         for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
         self._sunk = dict(self._depths_of_lifted())
@@ -462,8 +463,9 @@ class BulletBackend:
                     who = first.robot or robot
                     if kind == "scene" and first.rides:
                         allowed, stands = max(allowed or 0.0, PART_CONTACT), True
+                    rides = self._near_plates((first, one), (second, two))
                     gap = Clearance(
-                        kind, who, one, two, c[8], allowed, c[5], c[6], stands, second.robot
+                        kind, who, one, two, c[8], allowed, c[5], c[6], stands, second.robot, rides
                     )
                     _keep_nearest(best, gap)
         return list(best.values())
@@ -613,9 +615,11 @@ class BulletBackend:
                 else:
                     continue
                 if old is None or c[8] < old.distance:
+                    rides = self._near_plates((a, name_a), (b, name_b))
                     item = Clearance(
-                        kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands, b.robot
-                    )
+                        kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands, b.robot,
+                        rides,
+                    )  # fmt: skip
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
                 break
@@ -676,6 +680,10 @@ class BulletBackend:
             reach = min(limit, reach * 3.0)
         self._guess[key] = limit if best is None else max(best.distance, 0.0) + _FIRST_GUESS
         return [] if best is None else [best]
+
+    def _near_plates(self, *near: tuple[_Side, str]) -> tuple[str, ...]:
+        """The robots of which only a turntable, or what stands on it, is near."""
+        return tuple(side.robot for side, name in near if side.rides or name in self._plates)
 
     def _permitted(self, a: _Side, b: _Side, one: str, two: str, *, stands: bool) -> float | None:
         """The same of two sides; of what stands on the other one, None: it is not tested."""

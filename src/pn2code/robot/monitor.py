@@ -12,7 +12,7 @@ limit or a singularity; everything else is remembered as running minima, in tota
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Literal
 
@@ -130,6 +130,7 @@ class Monitor:
         joints: Mapping[str, Array],
         phase: str = "",
         kinds: Mapping[str, MotionKind] | None = None,
+        calm: Collection[str] = (),
     ) -> Verdict:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
@@ -138,6 +139,7 @@ class Monitor:
                 fault; a joint move passes through one without noticing (the wrist does so often).
                 On a joint move nothing may touch anything: parts that may come together do so only
                 on lines and arcs and while the tool works.
+            calm: the robots whose turntables stand: what is on these does not go with a joint move.
         """
         kinds = kinds or {}
         t = float(t)
@@ -163,7 +165,10 @@ class Monitor:
         warnings = []
         for found in clearances or ():
             others = (found.robot, found.second or found.b.split("/")[0])
-            free = any(kinds.get(name) == "ptp" for name in others)
+            free = any(
+                kinds.get(name) == "ptp" and not (name in found.rides and name in calm)
+                for name in others
+            )
             gap = replace(found, allowed=found.permitted(is_free=free))
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:

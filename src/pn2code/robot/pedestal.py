@@ -45,6 +45,9 @@ def _reach(shape: Any) -> float:
             half = np.array([radius, radius, float(solid.get("length")) / 2.0])
         case "sphere":
             half = np.full(3, float(solid.get("radius")))
+        case "capsule":
+            radius = float(solid.get("radius"))
+            half = np.array([radius, radius, float(solid.get("length")) / 2.0 + radius])
         case _:
             return WIDEST
     origin = shape.find("origin")

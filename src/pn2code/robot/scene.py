@@ -126,7 +126,8 @@ def load(
             codes.ROBOT_VALUE,
             f"a shape of `{name}` cannot be read, so that nobody knows whether it is in a zone",
             table("zones", None).at(),
-            hint="let it be a box, a cylinder, a sphere, or an OBJ or STL file of a body that is not flat",
+            hint="let it be a box, a cylinder, a sphere, a capsule, or an OBJ or STL file of a body that is "
+            "not flat",
         )
     return cell if len(d.errors) == before else None
 

@@ -226,6 +226,9 @@ def _shape(geometry: etree._Element | None, tree: Urdf) -> Hull | None:
             case "sphere":
                 across = 2.0 * float(shape.get("radius", ""))
                 return Hull.box((across, across, across))
+            case "capsule":  # `length` is that without its round ends
+                across = 2.0 * float(shape.get("radius", ""))
+                return Hull.box((across, across, float(shape.get("length", "")) + across))
             case "mesh":
                 hull = Hull.around(mesh_file(shape, tree.path.parent), 1.0)
                 if hull is None:

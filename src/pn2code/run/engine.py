@@ -730,7 +730,12 @@ class Engine:
     def _sample(self, t: float, joints: Mapping[str, Array]) -> None:
         """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
         kinds = {r.name: r.motion.kind for r in self.robots if r.motion is not None}
-        verdict = self.monitor.check(t, joints, self.activity, kinds)
+        calm = [
+            r.name
+            for r in self.robots
+            if r.motion is not None and r.arm is not None and not turned(r.arm.robot, r.motion)
+        ]
+        verdict = self.monitor.check(t, joints, self.activity, kinds, calm)
         self.record.sample(verdict)
         for robot, seen in zip(self._arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":

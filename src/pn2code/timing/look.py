@@ -208,7 +208,7 @@ class _Look:
         owed = [] if search.why else [*self._owed()]
         most_owed = [*self._owed_anyhow()] if is_bounded else []
         work = [*self._owed_by_work()] if search.why and not anyhow.why else []
-        late = tuple(self._late([*owed, *work]))
+        late = tuple(self._late([*owed, *work], most_owed))
         # Of robots without an arm, and of what is told by more than tokens, nothing is known.
         stops = [] if self.doings.why else [*search.faults, *anyhow.faults.values()]
         stops = [why for why in dict.fromkeys(stops) if why]
@@ -224,7 +224,7 @@ class _Look:
             late,
             tuple(stops),
             has_stops=self.doings.stops,
-            bounded=tuple(self._bounded([*self._late(most_owed)])) if is_bounded else None,
+            bounded=tuple(self._bounded(late)) if is_bounded else None,
             never=tuple(self._never()) if is_known else (),
         )
 
@@ -336,16 +336,29 @@ class _Look:
             owing = [i for i, (state, _) in enumerate(self.anyhow.nodes) if place in marked[state]]
             yield owner.phrase, longest_inside(own, owing)
 
-    def _late(self, owed: Sequence[tuple[str, int | None]]) -> Iterator[str]:
-        """Who may owe an answer for longer than the supervisor waits for it."""
+    def _late(
+        self,
+        owed: Sequence[tuple[str, int | None]],
+        most_owed: Sequence[tuple[str, int | None]],
+    ) -> Iterator[str]:
+        """Who may owe an answer for longer than the supervisor waits for it.
+
+        Args:
+            owed: for how long at most (ns; None: without a limit).
+            most_owed: where that is not known: no longer than this, so that it is not excluded.
+        """
         timeout = self.config.supervisor.reply_timeout_s
-        for who, ns in owed:
-            if ns is None or ns + TIE > timeout * NS:
-                after = "at any time, or never" if ns is None else f"after {ns / NS:.3f} s"
-                yield (
-                    f"an answer of {who} may come {after}, later than reply_timeout_s "
-                    f"({timeout:g} s) allows"
-                )
+        told = set[str]()
+        for is_bound, (who, ns) in [*((False, x) for x in owed), *((True, x) for x in most_owed)]:
+            if who in told or (ns is not None and ns + TIE <= timeout * NS):
+                continue
+            told.add(who)
+            after = "after" if not is_bound else "as late as after"
+            when = "at any time, or never" if ns is None else f"{after} {ns / NS:.3f} s"
+            yield (
+                f"an answer of {who} may come {when}, later than reply_timeout_s "
+                f"({timeout:g} s) allows"
+            )
 
     def _run(self, way: Way | None, which: str) -> Run | None:
         if way is None or self.folder is None:

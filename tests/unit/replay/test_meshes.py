@@ -83,3 +83,14 @@ def test_a_mesh_that_is_too_large_becomes_a_box(
     mesh = store.file(tmp_path / "a.obj")
     assert store.rows[mesh]["size"] == pytest.approx([2.0, 1.0, 1.0], abs=1e-4)
     assert "3 triangles" in store.simplified[0]
+
+
+def test_a_capsule_is_longer_than_it_says_by_its_round_ends() -> None:
+    store = Meshes()
+    found = np.array(sorted(points(store, store.capsule(0.1, 0.5))))
+    assert found[:, 2].min() == pytest.approx(-0.35) and found[:, 2].max() == pytest.approx(0.35)
+    across = np.hypot(found[:, 0], found[:, 1])
+    assert np.abs(across[np.abs(found[:, 2]) <= 0.2501] - 0.1).max() < 1e-3
+    past = np.maximum(np.abs(found[:, 2]) - 0.25, 0.0)
+    assert np.abs(np.hypot(across, past) - 0.1).max() < 1e-3
+    assert store.capsule(0.1, 0.5) == 0

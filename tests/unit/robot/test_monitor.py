@@ -163,3 +163,22 @@ def test_positions_given_are_the_ones_measured(cell, backend, monitor):
     sample = monitor.check(motion.ends, {"robot1": motion.q(motion.ends)}).samples[0]
     assert sample.pose.y == pytest.approx(motion.target.y, abs=1e-9)
     assert backend.tcp("robot1")[1, 3] == pytest.approx(sample.pose.y, abs=1e-12)
+
+
+def test_what_stands_on_a_calm_plate_does_not_go_with_a_joint_move(monitor, backend, home):
+    """Another arm grips it; while the plate turns, or where the owner's arm touches, nothing is permitted."""
+    found = Clearance(
+        "robots", "robot1", "box.1", "robot2/tool_tip", -1e-4, 0.002,
+        second="robot2", rides=("robot1",),
+    )  # fmt: skip
+    moving = {"robot1": "ptp", "robot2": "tool"}
+
+    def fault(gap, kinds=moving, calm=("robot1", "robot2")):
+        backend.gaps = [gap]
+        return monitor.check(0.0, home, kinds=kinds, calm=calm).fault
+
+    assert fault(found) is None
+    assert fault(found, calm=("robot2",)) is not None
+    assert fault(found, kinds={**moving, "robot2": "ptp"}) is not None
+    assert fault(replace(found, rides=())) is not None
+    assert fault(replace(found, distance=-0.003)) is not None

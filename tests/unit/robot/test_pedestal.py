@@ -61,7 +61,7 @@ def test_where_the_extent_is_not_known_it_is_the_widest(tmp_path: Path) -> None:
     for other, side in (
         ('<mesh filename="base.stl"/>', 0.92),
         ('<sphere radius="0.1"/>', 0.40),
-        ('<capsule radius="0.1" length="0.1"/>', 0.92),
+        ('<capsule radius="0.1" length="0.1"/>', 0.40),
     ):
         (tmp_path / "arm.urdf").write_text(text.replace(shape, other))
         assert width(cell("arm.urdf", 6, tmp_path)) == side

@@ -54,23 +54,24 @@ SHUT = np.array([0.0, 0.02, 0.02])
 OPEN = np.array([0.9, 0.02, 0.02])
 
 
-@pytest.mark.parametrize(
-    "odd", ['<mesh filename="flat.obj"/>', '<capsule radius="0.1" length="0.1"/>']
-)
-def test_what_has_no_shape_that_can_be_read_is_not_left_out_of_zones(
-    odd: str, tmp_path: Path
-) -> None:
-    """Nobody would see how fast it is there."""
+def with_flange(folder: Path, solid: str) -> dict[str, Any]:
+    """The cell with a shape on the flange of its arm."""
     text = (MODELS / "gp25.urdf").read_text(encoding="utf-8")
-    flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-    (tmp_path / "flat.obj").write_text(flat, encoding="utf-8")
-    shape = f'<link name="flange"><collision><geometry>{odd}</geometry></collision></link>'
+    shape = f'<link name="flange"><collision><geometry>{solid}</geometry></collision></link>'
     assert '<link name="flange"/>' in text
     arm = text.replace('<link name="flange"/>', shape)
     arm = arm.replace('filename="', f'filename="{MODELS}/').replace(f"{MODELS}/flat", "flat")
-    (tmp_path / "arm.urdf").write_text(arm, encoding="utf-8")
+    (folder / "arm.urdf").write_text(arm, encoding="utf-8")
     data: dict[str, Any] = tomllib.loads(TOML + ZONES)
     data["robots"]["arm"]["model"] = "arm.urdf"
+    return data
+
+
+def test_what_has_no_shape_that_can_be_read_is_not_left_out_of_zones(tmp_path: Path) -> None:
+    """Nobody would see how fast it is there."""
+    flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    (tmp_path / "flat.obj").write_text(flat, encoding="utf-8")
+    data = with_flange(tmp_path, '<mesh filename="flat.obj"/>')
     for zones in ({}, data.pop("zones")):
         d = Diagnostics()
         found = load({**data, "zones": zones}, tmp_path, nowhere, d)
@@ -80,6 +81,17 @@ def test_what_has_no_shape_that_can_be_read_is_not_left_out_of_zones(
         )
         assert said == ([words] if zones else []), said
         assert (found is None) is bool(zones)
+
+
+def test_a_capsule_counts_with_its_round_ends(tmp_path: Path) -> None:
+    data = with_flange(tmp_path, '<capsule radius="0.1" length="0.3"/>')
+    d = Diagnostics()
+    found = load(data, tmp_path, nowhere, d)
+    assert found is not None, [e.message for e in d.errors]
+    (box,) = (b for b in ZoneWatch(found).boxes("arm") if b[0] == "arm/flange")
+    _, axis, corners = box
+    lengths = np.sort(np.ptp(corners, axis=0))
+    assert axis == 6 and lengths == pytest.approx([0.2, 0.2, 0.5])
 
 
 def at(x: float, y: float, z: float) -> np.ndarray[Any, Any]:
