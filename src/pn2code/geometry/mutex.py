@@ -32,6 +32,7 @@ from pn2code.geometry.token_groups import (
     told,
 )
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Kind
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, Form
 from pn2code.semantics.game.token_game import GameError
@@ -61,11 +62,13 @@ class Guard:
 
     Args:
         groups: of which one is held while the token is taken.
+        place: it is there, by index, and some transitions take its token already; None: it is a new one.
     """
 
     groups: tuple[Group, ...]
     takes: tuple[Hand, ...]
     gives: tuple[Hand, ...]
+    place: int | None = None
 
 
 def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
@@ -160,11 +163,75 @@ def _has(graph: CellGraph, groups: Sequence[Group], arc: FlatArc, element: int) 
     return any(g.has(graph.partition.net.places[arc.place].colset, value) for g in own)
 
 
+def keepers(graph: CellGraph) -> Iterator[int]:
+    """Places of the supervisor with one token `()` that somebody takes and gives back: they keep somebody out."""
+    net = graph.partition.net
+    for p in net.places:
+        i = p.index
+        if (
+            graph.partition.place_owner[i] != 0
+            or p.colset.whole.kind is not Kind.UNIT
+            or p.colset.timed
+        ):
+            continue
+        arcs = [(t.index, a) for t in net.transitions for a in moving(t, frozenset((i,)))]
+        owners = {graph.partition.transition_owner[t] for t, _ in arcs}
+        kinds = {a.kind for _, a in arcs}
+        if (
+            owners != {0}
+            or not kinds <= {ArcKind.INPUT, ArcKind.OUTPUT}
+            or not all(is_one(a) for _, a in arcs)
+        ):
+            continue
+        counts = {m.get(i, 0) for m in graph.marked}
+        if graph.marked[0].get(i, 0) == 1 and counts == {0, 1}:
+            yield i
+
+
+def users(graph: CellGraph, place: int) -> tuple[frozenset[int], frozenset[int]]:
+    """The transitions that take a token from a place, and those that put one there."""
+    arcs = [
+        (t.index, a.kind)
+        for t in graph.partition.net.transitions
+        for a in moving(t, frozenset((place,)))
+    ]
+    return (
+        frozenset(t for t, kind in arcs if kind is ArcKind.INPUT),
+        frozenset(t for t, kind in arcs if kind is ArcKind.OUTPUT),
+    )
+
+
+def with_keepers(graph: CellGraph, guard: Guard) -> Iterator[Guard]:
+    """Guards whose token is that of a place that is there, and that is taken already for some of the groups."""
+    alone = {g: _guard(graph, (g,)) for g in guard.groups}
+    for place in keepers(graph):
+        takes, gives = users(graph, place)
+        rest = tuple(
+            g
+            for g, own in alone.items()
+            if own is None
+            or not {h.transition for h in own.takes} <= takes
+            or not {h.transition for h in own.gives} <= gives
+        )
+        if not rest or len(rest) == len(guard.groups):
+            continue
+        more = _guard(graph, rest)
+        if more is None:
+            continue
+        if takes.isdisjoint(h.transition for h in more.takes) and gives.isdisjoint(
+            h.transition for h in more.gives
+        ):
+            yield replace(more, place=place)
+
+
 def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
     """The cell with the place."""
     b = Builder(partition.net)
-    place = b.place(name, b.unit)
-    b.begin(place, b.dot)
+    if guard.place is None:
+        place = b.place(name, b.unit)
+        b.begin(place, b.dot)
+    else:
+        place = guard.place
     conditions = Conditions(b, partition.net)
 
     def arc(kind: ArcKind, hand: Hand) -> Arc:
@@ -181,7 +248,8 @@ def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
         b.add_arcs(hand.transition, [arc(ArcKind.INPUT, hand)], {})
     for hand in guard.gives:
         b.add_arcs(hand.transition, [arc(ArcKind.OUTPUT, hand)], {})
-    return replace(partition, net=b.net(), place_owner=(*partition.place_owner, 0))
+    more = (0,) if guard.place is None else ()
+    return replace(partition, net=b.net(), place_owner=(*partition.place_owner, *more))
 
 
 def _puts_and_takes(net: FlatNet, guard: Guard, hand: Hand) -> tuple[list[FlatArc], list[FlatArc]]:
