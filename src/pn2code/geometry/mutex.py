@@ -163,9 +163,13 @@ def _has(graph: CellGraph, groups: Sequence[Group], arc: FlatArc, element: int) 
     return any(g.has(graph.partition.net.places[arc.place].colset, value) for g in own)
 
 
-def keepers(graph: CellGraph) -> Iterator[int]:
-    """Places of the supervisor with one token `()` that somebody takes and gives back: they keep somebody out."""
+def keepers(graph: CellGraph) -> list[int]:
+    """Places of the supervisor with one token `()` that somebody takes and gives back: they keep somebody out.
+
+    Those come first whose token is away in the fewest states.
+    """
     net = graph.partition.net
+    found: list[tuple[int, int]] = []
     for p in net.places:
         i = p.index
         if (
@@ -185,43 +189,64 @@ def keepers(graph: CellGraph) -> Iterator[int]:
             continue
         counts = {m.get(i, 0) for m in graph.marked}
         if graph.marked[0].get(i, 0) == 1 and counts == {0, 1}:
-            yield i
+            found.append((sum(not m.get(i, 0) for m in graph.marked), i))
+    return [i for _, i in sorted(found)]
 
 
 def users(graph: CellGraph, place: int) -> tuple[frozenset[int], frozenset[int]]:
     """The transitions that take a token from a place, and those that put one there."""
-    arcs = [
-        (t.index, a.kind)
-        for t in graph.partition.net.transitions
-        for a in moving(t, frozenset((place,)))
-    ]
+    net, own = graph.partition.net, frozenset((place,))
+    kinds = [(t.index, a.kind) for t in net.transitions for a in moving(t, own)]
     return (
-        frozenset(t for t, kind in arcs if kind is ArcKind.INPUT),
-        frozenset(t for t, kind in arcs if kind is ArcKind.OUTPUT),
+        frozenset(t for t, kind in kinds if kind is ArcKind.INPUT),
+        frozenset(t for t, kind in kinds if kind is ArcKind.OUTPUT),
     )
 
 
-def with_keepers(graph: CellGraph, guard: Guard) -> Iterator[Guard]:
-    """Guards whose token is that of a place that is there, and that is taken already for some of the groups."""
-    alone = {g: _guard(graph, (g,)) for g in guard.groups}
+def with_keepers(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
+    """Ways to keep sides apart by a place that is there, whose token is away already while some are in the zone.
+
+    Args:
+        sides: of each robot the states in which it is in the zone.
+    """
+    held: Held | None = None
     for place in keepers(graph):
+        free = [{s for s in side if graph.marked[s].get(place, 0)} for side in sides]
+        if all(free) or not any(free):
+            continue
+        held = held or held_groups(graph)
         takes, gives = users(graph, place)
-        rest = tuple(
+        left = set().union(*free)
+        for groups in itertools.islice(_any_covers(held, left, place), _CANDIDATES):
+            guard = _guard(graph, groups)
+            if guard is None:
+                continue
+            more, back = ({h.transition for h in hands} for hands in (guard.takes, guard.gives))
+            if takes.isdisjoint(more) and gives.isdisjoint(back):
+                yield replace(guard, place=place)
+
+
+def _any_covers(held: Held, wanted: Collection[int], place: int) -> Iterator[tuple[Group, ...]]:
+    """Groups of other places of which one is held in each of some states; they may be held at once."""
+    left = set(wanted)
+    single = sorted(
+        (
             g
-            for g, own in alone.items()
-            if own is None
-            or not {h.transition for h in own.takes} <= takes
-            or not {h.transition for h in own.gives} <= gives
-        )
-        if not rest or len(rest) == len(guard.groups):
-            continue
-        more = _guard(graph, rest)
-        if more is None:
-            continue
-        if takes.isdisjoint(h.transition for h in more.takes) and gives.isdisjoint(
-            h.transition for h in more.gives
-        ):
-            yield replace(more, place=place)
+            for g in held.states
+            if held.most[g] == 1 and 0 not in held.states[g] and g.place != place
+        ),
+        key=lambda g: (len(held.states[g]), _order(g)),
+    )
+    yield from ((g,) for g in single if left <= held.states[g])
+    chosen: list[Group] = []
+    while left:
+        best = max(single, key=lambda g: len(left & held.states[g]), default=None)
+        if best is None or not left & held.states[best]:
+            return
+        chosen.append(best)
+        left -= held.states[best]
+    if len(chosen) > 1:
+        yield tuple(sorted(chosen, key=_order))
 
 
 def guarded(partition: Partition, guard: Guard, name: str) -> Partition:

@@ -6,6 +6,7 @@ zones.proposals(bad, touching)              # [Proposal(...)]
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pn2code.cell.partition import Partition
@@ -59,7 +60,7 @@ class Zones:
         ]
         name = mutex.free_name(net)
         tried = ""
-        served = tuple(self._served(zone))
+        served = tuple(self._served(zone, None))
         for number, guard in enumerate(self._guards(sides)):
             if number == mutex.MOST_TRIED:
                 break
@@ -79,7 +80,9 @@ class Zones:
                     works=True,
                     says=says,
                     is_there=guard.place is not None,
-                    served=served,
+                    served=served
+                    if guard.place is None
+                    else tuple(self._served(zone, guard.place)),
                 )
             tried = tried or f"{self._told(guard)}, does not help: {problem}"
         none = _RESTS if rests else _NONE
@@ -87,10 +90,10 @@ class Zones:
         return Proposal(robots, names, rests=rests, says=says, served=served)
 
     def _guards(self, sides: Sequence[frozenset[int]]) -> Iterator[mutex.Guard]:
-        """Of each way first those by a place that is there."""
-        for guard in mutex.guards(self._found.graph, sides):
-            yield from mutex.with_keepers(self._found.graph, guard)
-            yield guard
+        """First those by a place that is there."""
+        graph = self._found.graph
+        yield from itertools.islice(mutex.with_keepers(graph, sides), mutex.MOST_TRIED // 2)
+        yield from mutex.guards(graph, sides)
 
     def _told(self, guard: mutex.Guard) -> str:
         """Who takes the token, and who gives it back."""
@@ -101,15 +104,15 @@ class Zones:
         )
         return f"taken by {takes} and given back by {gives}" if gives else f"taken by {takes}"
 
-    def _served(self, zone: frozenset[Side]) -> Iterator[Served]:
-        """The places whose token is taken whenever some of the transitions are under way, but not for all of them."""
+    def _served(self, zone: frozenset[Side], only: int | None) -> Iterator[Served]:
+        """The place whose token is away whenever some of the transitions are under way, but not for all of them."""
         graph, net = self._found.graph, self._found.graph.partition.net
         by_transition: dict[int, frozenset[int]] = {}
         for side in zone:
             if side[1] >= 0:
                 before = by_transition.get(side[1], frozenset())
                 by_transition[side[1]] = before | frozenset(self._found.states[side])
-        for place in mutex.keepers(graph):
+        for place in mutex.keepers(graph) if only is None else [only]:
             taken = {
                 t for t, states in by_transition.items()
                 if not any(graph.marked[s].get(place, 0) for s in states)
@@ -120,6 +123,7 @@ class Zones:
                     tuple(net.transitions[t].name for t in sorted(taken)),
                     tuple(net.transitions[t].name for t in sorted({*by_transition} - taken)),
                 )
+                return  # others are away for longer
 
     def _rest(self, side: Side) -> Rest:
         """Where who is at rest there rests."""

@@ -493,9 +493,21 @@ def pose_out_of_reach(name: str, pose: Pose) -> str:
     ("name", "pose", "limit"),
     [
         # The links of the SCARA are 325 and 275 mm long, and its tool hangs down wherever it is.
-        ("cobra_s600", Pose(0.8, 0.0, 0.2, math.pi, 0.0, 0.0), "with the tool turned so: at most 6"),
-        ("cobra_s600", Pose(0.03, 0.0, 0.2, math.pi, 0.0, 0.0), "with the tool turned so: at least 50 mm)"),
-        ("lrmate200id", Pose(5.0, 0.0, 0.4, 0.0, 0.5 * math.pi, 0.0), "with the tool turned so: at most "),
+        (
+            "cobra_s600",
+            Pose(0.8, 0.0, 0.2, math.pi, 0.0, 0.0),
+            "with the tool turned so: at most 6",
+        ),
+        (
+            "cobra_s600",
+            Pose(0.03, 0.0, 0.2, math.pi, 0.0, 0.0),
+            "with the tool turned so: at least 50 mm)",
+        ),
+        (
+            "lrmate200id",
+            Pose(5.0, 0.0, 0.4, 0.0, 0.5 * math.pi, 0.0),
+            "with the tool turned so: at most ",
+        ),
     ],
 )
 def test_out_of_reach_says_how_far_the_arm_reaches(name: str, pose: Pose, limit: str) -> None:
