@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.free_variables import remark
+from pn2code.verify.controller.control_types import CONFLUENT
+from pn2code.verify.controller.proofs import _hint
 
 NET = """
     net N
@@ -60,3 +64,23 @@ def test_others_are_counted_and_named() -> None:
     (item,) = d.items
     assert "(so are 2 more)" in item.message
     assert sorted(n.message for n in item.notes) == ["`v` of `Y`", "`w` of `Y`"]
+
+
+@pytest.mark.parametrize(
+    ("out", "transitions", "advice"),
+    [
+        ("v", ("N.X",), "`v` is bound by no arc: put it on an input arc"),
+        ("good", ("N.X",), "leave one binding only"),
+        ("v", ("N.X", "N.Y"), "give the transitions different priorities"),
+    ],
+)
+def test_no_priority_chooses_between_the_bindings_of_one_transition(
+    out: str, transitions: tuple[str, ...], advice: str
+) -> None:
+    net = flat(NET.format("", out))
+    names = tuple(t.replace("N.X", net.transitions[0].name) for t in transitions)
+    check = SimpleNamespace(name=CONFLUENT, transitions=names)
+    said = _hint(check, SimpleNamespace(net=net))  # type: ignore[arg-type]
+    assert advice in said
+    assert ("priorities" in said) == (len(transitions) > 1)
+    assert 'order = "documented"' in said
