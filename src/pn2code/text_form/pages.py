@@ -92,9 +92,10 @@ class PageReader:
     def pages(self, lines: list[Line]) -> tuple[RawPage, ...]:
         """All pages; substitution transitions may name later ones."""
         for line in lines:
-            page = names.take(line.text, len("page"))
+            called = names.take(line.text, len("page"))
             own = [names.take(x.text, len("place")) for x in line.below if x.word == "place"]
-            self.named.setdefault(page[0] if page else "", set()).update(x[0] for x in own if x)
+            found = self.named.setdefault(called[0] if called else "", set())
+            found.update(x[0] for x in own if x)
         read = [page for line in lines if (page := self.page(line)) is not None]
         return tuple(self.whole(page) for page in read)
 
@@ -113,8 +114,8 @@ class PageReader:
         for one in below:
             if one.word == "place":
                 self.place(page, one)
-            elif one.word not in _ELEMENTS and (name := names.take(one.text, len(one.word))):
-                page.unread.add(name[0])
+            elif one.word not in _ELEMENTS and (taken := names.take(one.text, len(one.word))):
+                page.unread.add(taken[0])
         before = ""
         for one in below:
             match one.word:
