@@ -137,8 +137,8 @@ def _unfit(game: Game, t: FlatTransition) -> str:
             least, shortest = [], []
         if lacking and (not least or len(lacking) == len(least[0])):
             least.append(lacking)
-            alone = len(lacking) == 1
-            shortest.append(_shortage(game, t, by_place[lacking[0]], own) if alone else "")
+            is_one = len(lacking) == 1
+            shortest.append(_shortage(game, t, by_place[lacking[0]], own) if is_one else "")
     if len(dict.fromkeys(shortest)) == 1 and shortest[0]:
         return shortest[0]
     places = dict.fromkeys(p for lacking in least for p in lacking)
