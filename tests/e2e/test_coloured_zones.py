@@ -140,3 +140,26 @@ def test_an_arm_that_rests_there_is_told_as_such(tmp_path: Path) -> None:
     done = told.command()
     assert "`Top.Robot1.Visit1` comes to where robot2 rests" in done.stdout
     assert "from the start of each run, so that no place alone keeps them apart" in done.stdout
+
+
+def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> None:
+    """It is said whom it serves and whom not, and it is what is proposed, not a second one."""
+    net = NET.replace("      TAKE\n", "      in Free : ()\n", 1)
+    net = net.replace("      GIVE\n", "      out Free : ()\n", 1)
+    cell = meeting_cell(tmp_path / "cell", guarded=False, net=net)
+    (proposal,) = looked(cell)["proposals"]
+    assert proposal["works"], proposal
+    assert (proposal["place"], proposal["place_is_there"]) == ("Top.Supervisor.Free", True)
+    assert proposal["takes"] == ["Top.Supervisor.Send2"]
+    assert proposal["gives"] == ["Top.Supervisor.Got2"]
+    (served,) = proposal["served"]
+    assert served["during"] == ["Top.Robot1.Visit1"]
+    assert served["but_not"] == ["Top.Robot2.Visit2"]
+    said = CliRunner().invoke(app, ["check", "--geometry", str(cell)]).stdout
+    assert "(robot1 and robot2) share a zone" in said
+    assert (
+        "the token of `Top.Supervisor.Free` is away whenever `Top.Robot1.Visit1` is under way, "
+        "but not always while `Top.Robot2.Visit2` is"
+    ) in said
+    assert "proposal: the token `()` of `Top.Supervisor.Free`, a place that is there" in said
+    assert "also taken by `Top.Supervisor.Send2`" in said

@@ -245,11 +245,14 @@ def with_properties(desk: Desk) -> None:
 
 
 def with_text(desk: Desk) -> None:
-    """The document has a net as text in it."""
+    """The document has nets as text in it, the second one with its cell."""
     printed = (ROOT / "docs/text.md").read_text(encoding="utf-8")
-    net = re.search(r"^```cpnt\n(.*?)^```", printed, re.MULTILINE | re.DOTALL)
-    assert net is not None
-    (desk.project / "belt.cpnt").write_text(net.group(1), encoding="utf-8")
+    nets = re.findall(r"^```cpnt\n(.*?)^```", printed, re.MULTILINE | re.DOTALL)
+    (cell,) = re.findall(r"^```toml\n(.*?)^```", printed, re.MULTILINE | re.DOTALL)
+    (desk.project / "belt.cpnt").write_text(nets[0], encoding="utf-8")
+    (desk.project / "pick").mkdir()
+    (desk.project / "pick" / "cell.cpnt").write_text(nets[1], encoding="utf-8")
+    (desk.project / "pick" / "cell.toml").write_text(cell, encoding="utf-8")
 
 
 PLACES: dict[str, Callable[[Desk], None]] = {

@@ -27,11 +27,19 @@ def owners_of(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[Owner, 
         if len(found) == 1:
             clash = next((o for o in owners if overlap(o.instance, found[0])), None)
             if clash:
+                here = (name, found[0], origin)
+                first = next(o for who, _, _, o in wanted if who == clash.name)
+                outer, inner = sorted(
+                    [(clash.name, clash.instance, first), here], key=lambda x: len(x[1])
+                )
                 d.error(
                     codes.CELL_OWNER,
-                    f"`{name}` and `{clash.name}` would both own page instance `{found[0]}`",
-                    origin,
-                    hint="give each owner a substitution transition of its own",
+                    f"`{name}` and `{clash.name}` would both own page instance `{inner[1]}`",
+                    origin if outer[1] == inner[1] else outer[2],
+                    hint="give each owner a substitution transition of its own"
+                    if outer[1] == inner[1]
+                    else f"`{outer[1]}` of `{outer[0]}` has the pages of both below it: name the substitution "
+                    "transition whose page is that program alone",
                 )
             owners.append(Owner(len(owners), name, kind, found[0]))
         elif not found:

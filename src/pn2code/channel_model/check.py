@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,8 @@ LARGE = 20_000
 """States of the cell as it runs: with its medium it has four to twelve times as many, so it is asked at once."""
 QUICK_STATES = 2_000
 """Of a cell: beyond that it pays to have the compiler work longer."""
+MOST_ALIKE = 6
+"""Names of others for which an exchange stands."""
 WHOLE = "the cell with its medium"
 CRASHES = Crashes(supervisor=1, robots=1)
 """Of each side, in the exchange."""
@@ -174,13 +176,12 @@ def check_channel_model(
         yield whole(partition, storage, own_run, rules, shown, running_states)
     else:
         yield too_large()
-    seen: dict[Topology, str] = {}
+    alike: dict[Topology, list[int]] = {}
     for owner in partition.owners[1:]:
-        kind = topology(partition, owner.index)
-        if kind == Topology(0, 0, 0, 0) or kind in seen:
-            continue
-        seen[kind] = owner.name
-        yield exchange(partition, owner.index, run, rules, crashes)
+        alike.setdefault(topology(partition, owner.index), []).append(owner.index)
+    for kind, owners in alike.items():
+        if kind != Topology(0, 0, 0, 0):
+            yield exchange(partition, owners[0], run, rules, crashes, owners[1:])
 
 
 def whole(
@@ -332,8 +333,9 @@ def exchange(
     run: Run,
     rules: Rules,
     crashes: Crashes = CRASHES,
+    alike: Sequence[int] = (),
 ) -> Answer:
-    """The exchange between the supervisor and a side, with crashes of both."""
+    """The exchange between the supervisor and a side, with crashes of both; `alike`: others, for which it stands."""
     skeleton = Skeleton(partition, owner)
     net = compose(skeleton.partition, rules, crashes, skeleton.extra)
     name = partition.owners[owner].name
@@ -346,12 +348,12 @@ def exchange(
     others = [
         c.file
         for c in partition.channels
-        if owner in (c.writer, c.reader) and 0 not in (c.writer, c.reader)
+        if not {owner, *alike}.isdisjoint((c.writer, c.reader)) and 0 not in (c.writer, c.reader)
     ]
     if others:
         assumes += f"; no crash harms messages of {', '.join(others)}, between two robots"
     return _explored(
-        f"the exchange with {name}",
+        f"the exchange with {name}{_and_alike([partition.owners[i].name for i in alike])}",
         "whichever side crashes and is started again, at whatever time: no message is lost without a crash, none is "
         "taken twice or in another session, no flag is taken without its own data, and both sides end or go on in the "
         "new session",
@@ -361,6 +363,17 @@ def exchange(
         assumes,
         judged=True,
     )
+
+
+def _and_alike(names: Sequence[str]) -> str:
+    """The others for which an exchange stands, in parentheses."""
+    if not names:
+        return ""
+    shown = [*names[:MOST_ALIKE]]
+    if len(names) > MOST_ALIKE:
+        shown.append(f"{len(names) - MOST_ALIKE} more")
+    listed = " and ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))
+    return f" (and with {listed}, whose messages are of the same kinds)"
 
 
 def _explored(

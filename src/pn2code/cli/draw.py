@@ -28,6 +28,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
+from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.drawing import raster
@@ -283,7 +284,10 @@ def _frames(
         _refuse(DRAW_TRACE, f"`{trace}`: {refused}", "it must be a trace of this net", form)
     except OSError as problem:
         _refuse(
-            DRAW_TRACE, f"`{trace}`: {os_reason(problem)}", "give a file that can be read", form
+            DRAW_TRACE,
+            f"`{trace}`: {os_reason(problem)}",
+            traces_there(trace, "give a file that can be read"),
+            form,
         )
     return found, chosen, last
 

@@ -22,6 +22,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
+from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostic, Diagnostics, Origin, Severity
 from pn2code.diagnostics.codes import register
 
@@ -130,7 +131,8 @@ def _try(seats: Seats, trace: Path | None, form: Format) -> None:
     except Trouble as trouble:
         _refuse(f"`{trace}`: {trouble.message}", "give a trace of this net", form)
     except OSError as problem:
-        _refuse(f"cannot read `{trace}`: {os_reason(problem)}", "give another file", form)
+        hint = traces_there(trace, "give another file") if trace else "give another file"
+        _refuse(f"cannot read `{trace}`: {os_reason(problem)}", hint, form)
     for text in seat.session.notices:
         typer.echo(f"pn2code: {text}", err=True)
 

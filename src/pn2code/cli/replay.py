@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
@@ -25,6 +26,7 @@ from pn2code.cli.options import (
 )
 from pn2code.cli.replay_claims import Claims, claims, refuse
 from pn2code.cli.trace_progress import TraceProgress
+from pn2code.cli.traces_there import traces_there
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.report import places, time_text
 from pn2code.trace import replay as own
@@ -120,7 +122,8 @@ def kind(trace: Path) -> Recording | None:
             lines.seek(0)
             return recording(parse_json(lines.read()))
     except OSError as problem:
-        refuse(f"cannot read `{trace}`: {problem.strerror or problem}")
+        there = traces_there(trace, "")
+        refuse(f"cannot read `{trace}`: {os_reason(problem)}{f'; {there}' if there else ''}")
     except UnicodeDecodeError:
         refuse(f"`{trace}` is not a trace: it is no UTF-8 text")
     except BadJson as problem:

@@ -22,6 +22,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.trace_progress import TraceProgress
+from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 
@@ -218,7 +219,9 @@ def _trace(
             )
     except OSError as problem:
         _refuse(
-            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+            f"cannot read `{trace}`: {os_reason(problem)}",
+            traces_there(trace, "give a file that can be read"),
+            form,
         )
 
 
@@ -228,7 +231,9 @@ def _is_trace(trace: Path, form: Format) -> bool:
             head = json.loads(lines.readline(10_000_000))
     except OSError as problem:
         _refuse(
-            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+            f"cannot read `{trace}`: {os_reason(problem)}",
+            traces_there(trace, "give a file that can be read"),
+            form,
         )
     except (ValueError, RecursionError):
         return False

@@ -32,6 +32,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
+from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.game.report import places
@@ -312,7 +313,9 @@ def _sentence(problem: Exception, request: Request) -> str:
         case TraceRefusedError():
             return f"`{request.replay}` cannot be repeated: {problem}"
         case OSError():
-            return f"cannot read `{problem.filename or request.replay}`: {os_reason(problem)}"
+            file = Path(problem.filename or request.replay or "")
+            there = traces_there(file, "")
+            return f"cannot read `{file}`: {os_reason(problem)}{f'; {there}' if there else ''}"
         case _:
             raise AssertionError("no other problem is told in this way")
 

@@ -53,6 +53,8 @@ LEAST_WAY = 12
 """Lines that a run gets before further failures do: its head, steps, and why it goes on no more."""
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
+MOST_OF_ITEM = 4
+"""Lines of each of them."""
 MOST_NAMES = 6
 MOST_NAMES_LINES = 4
 """Lines with the names of failures of which there is no room to say more."""
@@ -311,13 +313,13 @@ def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
 
 
 def _as_it_runs(said: Said) -> Iterator[str]:
-    """Where the cell as it runs differs from what stands above."""
+    """Which of the sizes above, of the closed net, are others in the cell as it runs: a remark on them, no failure."""
     control = said.control
     differing = [] if control is None else [*control_text.differences(control)]
     if control is None or not differing:
         return
     yield ""
-    yield "The cell as it runs differs from the closed net:"
+    yield "In the cell as it runs, other than in the closed net (no failure; `--full` says why):"
     for title, what in differing[:MOST_DIFFERENCES]:
         yield from _row(title, what)
     if len(differing) > MOST_DIFFERENCES:
@@ -327,7 +329,6 @@ def _as_it_runs(said: Said) -> Iterator[str]:
         names = EngineNames(said.net)
         both = [names.transition(i) for i in said.found.dead_transitions() if i not in only]
         yield from _row("Dead in both", _listed(both, len(said.net.transitions)))
-    yield from _row("Reason", control_text.why_differs(control))
 
 
 def _dead(found: Exploration) -> str:
@@ -453,7 +454,7 @@ def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
             subsequent_indent="   ",
             break_long_words=False,
             break_on_hyphens=False,
-        )[:3]
+        )[:MOST_OF_ITEM]
         is_full = len(lines) + len(wrapped) + len(_names_of(wrong[number + 1 :])) > room
         if number and (number == MOST_ITEMS or is_full):
             return [*lines, *_names_of(wrong[number:])]
@@ -543,7 +544,13 @@ def _last(
         return [f"The run {goal} is in {file}; it cannot be shown: {problem}"]
     lines = [f"The run {goal}, {_count_of(len(shown), 'step')}, {file}:"]
     least = min(LEAST_STEPS, len(shown))
-    after = [_cut(x) for x in _after(why)]
+    after = [
+        part
+        for x in _after(why)
+        for part in textwrap.wrap(
+            x, _WIDTH, subsequent_indent="      ", break_long_words=False, break_on_hyphens=False
+        )
+    ]
     last = max(most - len(after), least)
     if len(shown) > last:
         lines.append(f"  ... {_count_of(len(shown) - last, 'step')} before")

@@ -13,10 +13,16 @@ from pn2code.robot.backend import Clearance
 
 @frozen(eq=False)
 class Nearest:
-    """How near two arms come: what was measured (None: nothing so near), and m that are certain, of all pairs."""
+    """How near two arms come, with what they hold.
+
+    Args:
+        where: what was measured (None: nothing so near); between: of it what and what, and who holds it, in words.
+        least: m that are certain, of all pairs.
+    """
 
     where: Clearance | None
     least: float
+    between: str = ""
 
 
 STOPPED = "looked at as far as runs get: a move before is impossible"
@@ -140,17 +146,32 @@ class Rest:
 
 
 @frozen
+class Served:
+    """A place of the net that keeps some of a zone's transitions from others, but not all of them.
+
+    Args:
+        place: its token is taken whenever one of `during` is under way, and not always while one of `but` is.
+    """
+
+    place: str
+    during: tuple[str, ...]
+    but: tuple[str, ...]
+
+
+@frozen
 class Proposal:
     """A place that would keep pairs apart.
 
     Args:
         robots: that share the zone; transitions: of which not two may be under way at once.
-        name: of the new place, with one token.
+        name: of the new place, with one token, or of one that is there.
         takes, gives: the transitions of the supervisor that take the token, and that give it back.
         takes_when, gives_when: of each of them in which case, in CPN ML; "": whenever it occurs.
         while_: the places that are marked meanwhile; while_with: with which tokens, "": any.
         rests: of what only rests in the zone: who, where, and whether it does from the start.
         works: whether the pairs keep apart with it, and the cell still comes to its end; says: what was found.
+        is_there: the place is there, and `takes` and `gives` are those that have to use it as well.
+        served: places that are there and keep some of the transitions apart.
     """
 
     robots: tuple[str, ...]
@@ -165,6 +186,8 @@ class Proposal:
     rests: tuple[Rest, ...] = ()
     works: bool = False
     says: str = ""
+    is_there: bool = False
+    served: tuple[Served, ...] = ()
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -172,6 +195,11 @@ class Proposal:
             "robots": list(self.robots),
             "transitions": list(self.transitions),
             "place": self.name or None,
+            "place_is_there": self.is_there,
+            "served": [
+                {"place": x.place, "during": list(x.during), "but_not": list(x.but)}
+                for x in self.served
+            ],
             "takes": list(self.takes),
             "gives": list(self.gives),
             "while": list(self.while_),
@@ -266,6 +294,7 @@ class Layout:
         where = self.nearest.where
         return {
             "links": [where.a, where.b] if where else None,
+            "between": self.nearest.between or None,
             "distance_m": round(where.distance, 5) if where else None,
             "at_least_m": round(self.nearest.least, 5),
         }

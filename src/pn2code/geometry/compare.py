@@ -27,7 +27,7 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.contents import Contents, Load, spot, spots
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.level import level
-from pn2code.geometry.part_names import gap_as_seen, held, on_plate, standing
+from pn2code.geometry.part_names import gap_as_seen, held, on_plate, standing, told
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
@@ -186,7 +186,8 @@ class Comparison:
             certain = min(certain, least)
         if not clear:
             return None
-        return Nearest(gap_as_seen(where), min(certain, best))
+        between = f"{told(where.a)} and {told(where.b)}" if where else ""
+        return Nearest(gap_as_seen(where), min(certain, best), between)
 
     def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
         """Each leg of one with each of the other, since nobody knows how far they are."""

@@ -32,6 +32,7 @@ from pn2code.geometry.token_groups import (
     told,
 )
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Kind
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, Form
 from pn2code.semantics.game.token_game import GameError
@@ -61,11 +62,13 @@ class Guard:
 
     Args:
         groups: of which one is held while the token is taken.
+        place: it is there, by index, and some transitions take its token already; None: it is a new one.
     """
 
     groups: tuple[Group, ...]
     takes: tuple[Hand, ...]
     gives: tuple[Hand, ...]
+    place: int | None = None
 
 
 def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
@@ -160,11 +163,100 @@ def _has(graph: CellGraph, groups: Sequence[Group], arc: FlatArc, element: int) 
     return any(g.has(graph.partition.net.places[arc.place].colset, value) for g in own)
 
 
+def keepers(graph: CellGraph) -> list[int]:
+    """Places of the supervisor with one token `()` that somebody takes and gives back: they keep somebody out.
+
+    Those come first whose token is away in the fewest states.
+    """
+    net = graph.partition.net
+    found: list[tuple[int, int]] = []
+    for p in net.places:
+        i = p.index
+        if (
+            graph.partition.place_owner[i] != 0
+            or p.colset.whole.kind is not Kind.UNIT
+            or p.colset.timed
+        ):
+            continue
+        arcs = [(t.index, a) for t in net.transitions for a in moving(t, frozenset((i,)))]
+        owners = {graph.partition.transition_owner[t] for t, _ in arcs}
+        kinds = {a.kind for _, a in arcs}
+        if (
+            owners != {0}
+            or not kinds <= {ArcKind.INPUT, ArcKind.OUTPUT}
+            or not all(is_one(a) for _, a in arcs)
+        ):
+            continue
+        counts = {m.get(i, 0) for m in graph.marked}
+        if graph.marked[0].get(i, 0) == 1 and counts == {0, 1}:
+            found.append((sum(not m.get(i, 0) for m in graph.marked), i))
+    return [i for _, i in sorted(found)]
+
+
+def users(graph: CellGraph, place: int) -> tuple[frozenset[int], frozenset[int]]:
+    """The transitions that take a token from a place, and those that put one there."""
+    net, own = graph.partition.net, frozenset((place,))
+    kinds = [(t.index, a.kind) for t in net.transitions for a in moving(t, own)]
+    return (
+        frozenset(t for t, kind in kinds if kind is ArcKind.INPUT),
+        frozenset(t for t, kind in kinds if kind is ArcKind.OUTPUT),
+    )
+
+
+def with_keepers(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
+    """Ways to keep sides apart by a place that is there, whose token is away already while some are in the zone.
+
+    Args:
+        sides: of each robot the states in which it is in the zone.
+    """
+    held: Held | None = None
+    for place in keepers(graph):
+        free = [{s for s in side if graph.marked[s].get(place, 0)} for side in sides]
+        if all(free) or not any(free):
+            continue
+        held = held or held_groups(graph)
+        takes, gives = users(graph, place)
+        left = set().union(*free)
+        for groups in itertools.islice(_any_covers(held, left, place), _CANDIDATES):
+            guard = _guard(graph, groups)
+            if guard is None:
+                continue
+            more, back = ({h.transition for h in hands} for hands in (guard.takes, guard.gives))
+            if takes.isdisjoint(more) and gives.isdisjoint(back):
+                yield replace(guard, place=place)
+
+
+def _any_covers(held: Held, wanted: Collection[int], place: int) -> Iterator[tuple[Group, ...]]:
+    """Groups of other places of which one is held in each of some states; they may be held at once."""
+    left = set(wanted)
+    single = sorted(
+        (
+            g
+            for g in held.states
+            if held.most[g] == 1 and 0 not in held.states[g] and g.place != place
+        ),
+        key=lambda g: (len(held.states[g]), _order(g)),
+    )
+    yield from ((g,) for g in single if left <= held.states[g])
+    chosen: list[Group] = []
+    while left:
+        best = max(single, key=lambda g: len(left & held.states[g]), default=None)
+        if best is None or not left & held.states[best]:
+            return
+        chosen.append(best)
+        left -= held.states[best]
+    if len(chosen) > 1:
+        yield tuple(sorted(chosen, key=_order))
+
+
 def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
     """The cell with the place."""
     b = Builder(partition.net)
-    place = b.place(name, b.unit)
-    b.begin(place, b.dot)
+    if guard.place is None:
+        place = b.place(name, b.unit)
+        b.begin(place, b.dot)
+    else:
+        place = guard.place
     conditions = Conditions(b, partition.net)
 
     def arc(kind: ArcKind, hand: Hand) -> Arc:
@@ -181,7 +273,8 @@ def guarded(partition: Partition, guard: Guard, name: str) -> Partition:
         b.add_arcs(hand.transition, [arc(ArcKind.INPUT, hand)], {})
     for hand in guard.gives:
         b.add_arcs(hand.transition, [arc(ArcKind.OUTPUT, hand)], {})
-    return replace(partition, net=b.net(), place_owner=(*partition.place_owner, 0))
+    more = (0,) if guard.place is None else ()
+    return replace(partition, net=b.net(), place_owner=(*partition.place_owner, *more))
 
 
 def _puts_and_takes(net: FlatNet, guard: Guard, hand: Hand) -> tuple[list[FlatArc], list[FlatArc]]:

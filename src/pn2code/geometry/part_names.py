@@ -3,6 +3,7 @@
     held("blank.1", "arm")              # "blank.1.held_by_arm"
     on_plate("blank.1", "left/plate", 2)                # "blank.1.on_left_plate_2"
     as_in_runs("arm/blank.1.held_by_arm")               # "arm/blank.1"
+    told("arm/blank.1.held_by_arm")                     # "`blank.1` (a part, held by `arm`)"
     as_seen(apart)                      # with such names in `where` and in the reason
 
 Of parts of a kind that are handled in the same way the first one is named; so two that stand on one turntable while two
@@ -44,6 +45,25 @@ def _of(part: str) -> str:
 def as_in_runs(text: str) -> str:
     """A name, or words in which there are some."""
     return _OWN_TOOL.sub("", _OWN.sub(r"\1", text))
+
+
+_HELD = re.compile(r"(?:.*/)?(.+?)\.(?:tool_)?(?:held_by_(\w+)|(standing)|on_\w+)")
+
+
+def told(name: str) -> str:
+    """Of a link its name, and of a part who holds it, or where it is.
+
+    told("arm/link_3")                  # "`arm/link_3`"
+    told("arm/blank.1.held_by_arm")     # "`blank.1` (a part, held by `arm`)"
+    """
+    found = _HELD.fullmatch(name)
+    if found is None:
+        return f"`{name}`"
+    part, holder, stands = found.groups()
+    what = "a part" if "." in part else "a tool"
+    if holder:
+        return f"`{part}` ({what}, held by `{holder}`)"
+    return f"`{part}` ({what}, {'which stands there' if stands else 'on a belt or turntable'})"
 
 
 def as_seen(apart: Apart) -> Apart:

@@ -60,13 +60,14 @@ def _verdicts(layout: Layout) -> Iterator[str]:
     if layout.of_pairs == "yes" and layout.nearest is not None:
         near = layout.nearest.where
         seen = (
-            f"; of what was measured `{near.a}` and `{near.b}` came nearest, {_far(near.distance)}, "
+            f"; of what was measured {layout.nearest.between} came nearest, {_far(near.distance)}, "
             if near
             else ""
         )
         seen += "but not all was, and others may come as near as that bound" if near else ""
         who = "arms or devices" if layout.devices else "arms"
-        yield f"           two {who} keep at least {_millimetres(layout.nearest.least)} apart{seen}"
+        carry = ", with what they hold or carry," if "(a " in layout.nearest.between else ""
+        yield f"           two {who}{carry} keep at least {_millimetres(layout.nearest.least)} apart{seen}"
 
 
 def _table(layout: Layout, full: bool) -> Iterator[str]:
@@ -191,13 +192,22 @@ def _proposed(p: Proposal) -> Iterator[str]:
         for rest in p.rests:
             yield f"  {rest.robot} rests at {rest.at}, {_FROM_START if rest.from_start else _LATER}"
     else:
-        yield f"{zone} share a zone that the net does not guard"
+        whose = f" ({' and '.join(p.robots)})" if len(p.robots) > 1 else ""
+        yield f"{zone}{whose} share a zone that the net does not guard"
+    for x in p.served:
+        during, but = (" and ".join(f"`{t}`" for t in ts) for ts in (x.during, x.but))
+        yield f"  the token of `{x.place}` is away whenever {during} is under way, but not always while {but} is"
     if not p.works:
         yield f"  {p.says}"
         return
-    yield f"  proposal: a place `{p.name}` of the supervisor with one token `()`"
-    yield f"    taken by {_each(p.takes, p.takes_when, 'if')}"
-    yield f"    given back by {_each(p.gives, p.gives_when, 'if')}"
+    also = ""
+    if p.is_there:
+        yield f"  proposal: the token `()` of `{p.name}`, a place that is there"
+        also = "also "
+    else:
+        yield f"  proposal: a place `{p.name}` of the supervisor with one token `()`"
+    yield f"    {also}taken by {_each(p.takes, p.takes_when, 'if')}"
+    yield f"    {also}given back by {_each(p.gives, p.gives_when, 'if')}"
     if any((*p.takes_when, *p.gives_when)):
         yield "    (on these arcs: `if CONDITION then 1`() else empty`)"
     yield f"    (it is empty while {_each(p.while_, p.while_with, 'with')} is marked)"

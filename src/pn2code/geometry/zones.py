@@ -6,11 +6,12 @@ zones.proposals(bad, touching)              # [Proposal(...)]
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+import itertools
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pn2code.cell.partition import Partition
 from pn2code.geometry import mutex
-from pn2code.geometry.answers import Proposal, Rest
+from pn2code.geometry.answers import Proposal, Rest, Served
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.situations import Side, Situations
@@ -59,7 +60,8 @@ class Zones:
         ]
         name = mutex.free_name(net)
         tried = ""
-        for number, guard in enumerate(mutex.guards(found.graph, sides)):
+        served = tuple(self._served(zone, None))
+        for number, guard in enumerate(self._guards(sides)):
             if number == mutex.MOST_TRIED:
                 break
             problem, says = self._tried(guard, name, zone, bad)
@@ -67,7 +69,7 @@ class Zones:
                 return Proposal(
                     robots,
                     names,
-                    name,
+                    name if guard.place is None else net.places[guard.place].name,
                     tuple(net.transitions[h.transition].name for h in guard.takes),
                     tuple(net.transitions[h.transition].name for h in guard.gives),
                     tuple(net.places[g.place].name for g in guard.groups),
@@ -77,11 +79,51 @@ class Zones:
                     rests,
                     works=True,
                     says=says,
+                    is_there=guard.place is not None,
+                    served=served
+                    if guard.place is None
+                    else tuple(self._served(zone, guard.place)),
                 )
-            tried = tried or problem
+            tried = tried or f"{self._told(guard)}, does not help: {problem}"
         none = _RESTS if rests else _NONE
-        says = f"no place that was tried helps: {tried}" if tried else none
-        return Proposal(robots, names, rests=rests, says=says)
+        says = f"no place that was tried helps; one that is {tried}" if tried else none
+        return Proposal(robots, names, rests=rests, says=says, served=served)
+
+    def _guards(self, sides: Sequence[frozenset[int]]) -> Iterator[mutex.Guard]:
+        """First those by a place that is there."""
+        graph = self._found.graph
+        yield from itertools.islice(mutex.with_keepers(graph, sides), mutex.MOST_TRIED // 2)
+        yield from mutex.guards(graph, sides)
+
+    def _told(self, guard: mutex.Guard) -> str:
+        """Who takes the token, and who gives it back."""
+        net = self._found.graph.partition.net
+        takes, gives = (
+            " and ".join(f"`{net.transitions[h.transition].name}`" for h in hands)
+            for hands in (guard.takes, guard.gives)
+        )
+        return f"taken by {takes} and given back by {gives}" if gives else f"taken by {takes}"
+
+    def _served(self, zone: frozenset[Side], only: int | None) -> Iterator[Served]:
+        """The place whose token is away whenever some of the transitions are under way, but not for all of them."""
+        graph, net = self._found.graph, self._found.graph.partition.net
+        by_transition: dict[int, frozenset[int]] = {}
+        for side in zone:
+            if side[1] >= 0:
+                before = by_transition.get(side[1], frozenset())
+                by_transition[side[1]] = before | frozenset(self._found.states[side])
+        for place in mutex.keepers(graph) if only is None else [only]:
+            taken = {
+                t for t, states in by_transition.items()
+                if not any(graph.marked[s].get(place, 0) for s in states)
+            }  # fmt: skip
+            if taken and len(taken) < len(by_transition):
+                yield Served(
+                    net.places[place].name,
+                    tuple(net.transitions[t].name for t in sorted(taken)),
+                    tuple(net.transitions[t].name for t in sorted({*by_transition} - taken)),
+                )
+                return  # others are away for longer
 
     def _rest(self, side: Side) -> Rest:
         """Where who is at rest there rests."""
@@ -103,7 +145,10 @@ class Zones:
             return "the cell with the place was not seen to its end", ""
         stuck = mutex.stuck(graph)
         if stuck > self._stuck:
-            return f"with it, {stuck:,} states have no way to the end", ""
+            return (
+                f"with it, {stuck:,} states have no way to the end, without it {self._stuck:,}",
+                "",
+            )
         lost = mutex.fired(before) - mutex.fired(graph)
         if lost:
             return f"with it, `{before.partition.net.transitions[min(lost)].name}` never occurs", ""

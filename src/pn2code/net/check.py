@@ -61,6 +61,8 @@ from pn2code.reading.document import (
 
 NORMAL_PRIORITY = 1000
 """Priority of a transition without one."""
+_MOST_NEIGHBOURS = 6
+_STANDARD = ("UNIT", "BOOL", "INT", "INTINF", "TIME", "REAL", "STRING")
 _NUMBER = re.compile(r" *[0-9]+ *")
 _UNTIMED = (Form.TOKEN, Form.MULTISET)
 _INITIAL_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_MULTISET, Form.TIMED_TOKEN)
@@ -271,8 +273,8 @@ class _Checker:
             unknown = colset is None and name not in self.broken
             if unknown or len(self.d.errors) > before:
                 wrong[place.id] = place
-        for t in page.transitions if wrong else ():
-            self.note_neighbours(t, wrong)
+        if wrong:
+            self.note_neighbours(page.transitions, wrong)
         names = {p.id: p for p in page.places}
         transitions = [self.transition(t, colsets, names) for t in page.transitions]
         return TypedPage(
@@ -284,15 +286,26 @@ class _Checker:
             origin=page.origin,
         )
 
-    def note_neighbours(self, t: Transition, wrong: Mapping[str, Place]) -> None:
-        """Mention a transition beside a place with an error, which CPN Tools refuses to check."""
-        place = next((wrong[a.place] for a in t.arcs if a.place in wrong), None)
-        if place is not None:
+    def note_neighbours(
+        self, transitions: Sequence[Transition], wrong: Mapping[str, Place]
+    ) -> None:
+        """Mention the transitions beside a place with an error, which CPN Tools refuses to check: once a place."""
+        beside: dict[str, list[Transition]] = {}
+        for t in transitions:
+            place = next((a.place for a in t.arcs if a.place in wrong), None)
+            if place is not None:
+                beside.setdefault(place, []).append(t)
+        for place, found in beside.items():
+            names = [f"`{t.name}`" for t in found]
+            if len(names) > _MOST_NEIGHBOURS:
+                names[_MOST_NEIGHBOURS:] = [f"{len(names) - _MOST_NEIGHBOURS} more"]
+            listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
             self.d.note(
                 NEIGHBOUR_WRONG,
-                f"transition `{t.name}` cannot be checked completely, because place `{place.name}` has an error",
-                t.origin,
-                notes=[Note("the place is here", place.origin)],
+                f"transition{'s' * (len(found) > 1)} {listed} cannot be checked completely, because place "
+                f"`{wrong[place].name}` has an error",
+                found[0].origin,
+                notes=[Note("the place is here", wrong[place].origin)],
                 hint="correct the place first",
             )
 
@@ -303,6 +316,10 @@ class _Checker:
         if colset is not None or name in self.broken:
             return colset
         hint = did_you_mean(name, self.program.colsets, f"declare `colset {name} = ...;`")
+        if name in _STANDARD:
+            hint = f"declare it as CPN Tools does in a new net: `colset {name} = {name.lower()};`"
+            if place.origin.file.lower().endswith(".cpnt"):
+                hint += ", or write `standard` on a line of its own for all of these"
         if not name.isidentifier():
             hint = f"give it a name, `colset NAME = {name};`, and write the name here"
         if place.colset is None:

@@ -173,6 +173,15 @@ UNBOUND_VARIABLE = register(
     "Function calls, arithmetic and `if` on an input arc only test, and so do summands whose "
     "coefficient contains a variable.",
 )
+FREE_VARIABLE = register(
+    "free-variable",
+    "a variable is bound by no input arc",
+    "A variable of a colour set with at most 100 values need not be bound: where it is on output arcs alone, CPN Tools "
+    "draws one of the values in a simulation, and a state space has an arc for each; where a guard or a function on "
+    "an input arc uses it, all values are tried. That is how a choice of the environment is written, such as what a "
+    "sensor says on the page of a robot. In a supervisor there is nobody who chooses: the program takes the first "
+    "value that is possible, always the same. There the variable is mostly missing on an input arc.",
+)
 DECLARATION_INSIDE = register(
     "declaration-in-inscription",
     "an inscription declares something other than a value",

@@ -6,10 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
+from pn2code.diagnostics import Diagnostic, Diagnostics, TooManyDiagnosticsError
+from pn2code.ml.codes import UNBOUND, UNKNOWN_COLOUR_SET
 from pn2code.ml.core.computing import Compute
 from pn2code.net import guard_order
 from pn2code.net.check import check
+from pn2code.net.codes import (
+    NEIGHBOUR_WRONG,
+    PLACE_COLSET,
+    PORT_IDLE,
+    PORT_UNASSIGNED,
+    SOCKET_UNASSIGNED,
+)
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
 from pn2code.net.link import link
@@ -73,11 +81,14 @@ def _examine(
 ) -> Examined:
     before = len(d.errors)
     document = read(path, d, partial=True, drawn=drawn)
+    first = len(d.items)
     net = link(document, d, partial=True) if document is not None else None
     if net is None:
         return Examined(document, None)
     linked = len(d.errors) == before
     typed = check(net, d, values, partial=True, int_bits=int_bits, compute=compute)
+    if document is not None and document.unread:
+        _drop_consequences(d, document.unread, first)
     if typed is None or not linked:
         return Examined(document, None)
     if len(d.errors) > before:
@@ -87,6 +98,24 @@ def _examine(
     if flat is not None:
         guard_order.warn(flat, d)
     return Examined(document, flat, typed)
+
+
+def _drop_consequences(d: Diagnostics, unread: frozenset[str], first: int) -> None:
+    """Leave out what is said from the item `first` on only because lines of a text cannot be read.
+
+    Such are names that those lines may declare, and ports and transitions beside them that lack something.
+    """
+
+    def follows(item: Diagnostic) -> bool:
+        if item.code in (PORT_IDLE, PORT_UNASSIGNED, SOCKET_UNASSIGNED, NEIGHBOUR_WRONG):
+            return True
+        named = item.message.split("`")[1::2]
+        return item.code in _OF_NAMES and bool(named) and named[-1] in unread
+
+    d.items[first:] = [item for item in d.items[first:] if not follows(item)]
+
+
+_OF_NAMES = (PLACE_COLSET, UNKNOWN_COLOUR_SET, UNBOUND)
 
 
 def load(

@@ -285,6 +285,7 @@ class Document:
         elements: how many `pages`, `places`, `transitions` (substitution transitions are counted) and `arcs` the file
             has.
         instances: the page instances that the file lists, for what refers to them (monitors).
+        unread: the words of lines that cannot be read: names among them may be declared there.
     """
 
     file: str
@@ -299,3 +300,4 @@ class Document:
     options: dict[str, str] = field(default_factory=dict)
     elements: dict[str, int] = field(default_factory=dict)
     instances: tuple[RawInstance, ...] = ()
+    unread: frozenset[str] = frozenset()

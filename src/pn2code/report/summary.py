@@ -232,7 +232,7 @@ def page(summary: dict[str, Any]) -> RenderableType:
 
     parts: list[RenderableType] = [head, "", facts, _times(summary)]
     parts += [
-        Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")
+        Text(f"warning at {w['t']:.2f} s, {w['robot']}: {w['text']}", "yellow")
         for w in summary["warnings"]
     ]
     return Group(*parts)

@@ -26,6 +26,9 @@ class ClosedForm:
     wrist_axes: tuple[int, ThreeAxes] | None = None
     """The three axes of a spherical wrist, and the index of the first; None: the arm has no such wrist."""
 
+    bends: tuple[str, ...] = ("elbow", "wrist")
+    """What of the arm can be straight, and singular then."""
+
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
 

@@ -37,6 +37,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
+from pn2code.robot.digits import told_apart
 from pn2code.robot.external import ExternalAxis
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import (
@@ -507,10 +508,8 @@ class RobotExecutor:
         rows = alone.all_branches(target[None], arm_angle)[0]
         there = rows[~np.isnan(rows[:, 0])]
         if not len(there):
-            centre = float(np.linalg.norm(target[:3, 3]))
-            return MotionFault(
-                "unreachable", f"the pose is out of reach: {1000 * centre:.0f} mm from the base"
-            )
+            reach = _reach(alone, target, arm_angle)
+            return MotionFault("unreachable", f"the pose is out of reach: {reach}")
         if self.robot.branch is not None:
             return MotionFault(
                 "unreachable",
@@ -578,3 +577,31 @@ class RobotExecutor:
         elif kind not in ("ptp", "axis"):
             step = max(step, path.duration)
         return Motion(self.robot.name, command, kind, now, path, self.pose, target, result, step)
+
+
+_RAY = 48
+"""Poses between the base and one that is out of reach that are looked at, twice."""
+_FAR = 4.0
+"""How many times as far as a pose that is too near is looked."""
+
+
+def _reach(k: Kinematics, target: Array, arm_angle: float | None) -> str:
+    """How far the tool comes from the base in the direction of a pose that it does not reach, turned as it is there."""
+    centre = 1000.0 * float(np.linalg.norm(target[:3, 3]))
+    says = "{} mm from the base (limit in this direction, with the tool turned so: {})"
+
+    def reached(parts: Array) -> Array:
+        poses = np.repeat(target[None], len(parts), axis=0)
+        poses[:, :3, 3] *= parts[:, None]
+        return np.asarray(~np.isnan(k.all_branches(poses, arm_angle)[:, :, 0]).all(axis=1))
+
+    for end in (0.0, _FAR):
+        parts = np.linspace(1.0, end, _RAY + 1)
+        there = np.flatnonzero(reached(parts))
+        if len(there):
+            i = max(int(there[0]), 1)
+            parts = np.linspace(parts[i - 1], parts[i], _RAY + 1)  # around the border
+            limit = parts[int(np.flatnonzero(reached(parts))[0])] * centre
+            far, most = told_apart(centre, limit, digits=0)
+            return says.format(far, f"{'at most' if end < 1.0 else 'at least'} {most} mm")
+    return says.format(f"{centre:.0f}", "nothing is reached")

@@ -301,6 +301,12 @@ class Kinematics:
             for s, e, w in zip(sigma, elbow, wrist, strict=True)
         ]
 
+    def straightness(self, elbow: float, wrist: float) -> str:
+        """How far from straight (rad) what of this arm can be straight is, for people: "", or begins with a comma."""
+        angles = {"elbow": elbow, "wrist": wrist}
+        told = [f"{part} {math.degrees(angles[part]):.1f} deg" for part in self._form.bends]
+        return f", {', '.join(told)} from straight" if told else ""
+
     # Inverse
 
     def all_branches(self, T_base_tcp: Array, arm_angle: float | Array | None = None) -> Array:

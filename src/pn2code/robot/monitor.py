@@ -11,7 +11,6 @@ limit or a singularity; everything else is remembered as running minima, in tota
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Literal
@@ -244,10 +243,10 @@ class Monitor:
             )
             return Fault("joint-limit", s.robot, message, t, s.pose)
         if moving and s.conditioning.sigma_min < SINGULAR_SIGMA:
+            kinematics = self._cell.robot(s.robot).kinematics
             message = (
-                f"robot `{s.robot}` is at a singularity (smallest singular value "
-                f"{s.conditioning.sigma_min:.1e}, elbow {math.degrees(s.conditioning.elbow):.1f} deg "
-                f"from straight, wrist {math.degrees(s.conditioning.wrist):.1f} deg), {at}"
+                f"robot `{s.robot}` is at a singularity (smallest singular value {s.conditioning.sigma_min:.1e}"
+                f"{kinematics.straightness(s.conditioning.elbow, s.conditioning.wrist)}), {at}"
             )
             return Fault("singularity", s.robot, message, t, s.pose)
         return None

@@ -710,9 +710,8 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     leap = step[first, axis] > 2.0 * exact[first, axis] + 0.5
     singular = leap or condition.condition > SINGULAR_CONDITION
     what = (
-        f"the {lin.line.name} passes a singularity (condition number {condition_text(condition.condition)}, elbow "
-        f"{math.degrees(condition.elbow):.1f} deg from straight, wrist "
-        f"{math.degrees(condition.wrist):.1f} deg): "
+        f"the {lin.line.name} passes a singularity (condition number {condition_text(condition.condition)}"
+        f"{kinematics.straightness(condition.elbow, condition.wrist)}): "
         if singular
         else ""
     )
@@ -755,8 +754,8 @@ def _check_leap(kinematics: Kinematics, lin: LinearTrajectory, start: Array) -> 
     raise MotionFault(
         "singularity",
         f"the {lin.line.name} {'passes' if time > 0.0 else 'begins in'} a singularity (condition number "
-        f"{condition_text(condition.condition)}, elbow {math.degrees(condition.elbow):.1f} deg from straight, wrist "
-        f"{math.degrees(condition.wrist):.1f} deg): {arm.called(axis)} would have to leap by "
+        f"{condition_text(condition.condition)}{kinematics.straightness(condition.elbow, condition.wrist)}): "
+        f"{arm.called(axis)} would have to leap by "
         f"{arm.shown(axis, by, 1)} {arm.unit(axis)}{hint}",
         pose=pose_of(kinematics.forward(q)),
         q=tuple(q.tolist()),

@@ -73,6 +73,7 @@ class Scara(Vertical):
     """Three axes turn and one slides, all vertical."""
 
     known = SCARA
+    bends = ("elbow",)
 
     def __init__(self, chain: Chain, T_flange_tcp: Array) -> None:
         super().__init__(chain, T_flange_tcp)
@@ -121,6 +122,7 @@ class Gantry(Vertical):
     """Three axes slide, one turns about the vertical."""
 
     known = GANTRY
+    bends = ()
 
     def __init__(self, chain: Chain, T_flange_tcp: Array) -> None:
         super().__init__(chain, T_flange_tcp)

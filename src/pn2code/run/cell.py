@@ -8,7 +8,6 @@ The recipe of `pn2code run`; everything that takes decisions lives in the module
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 import shutil
@@ -243,7 +242,7 @@ def run_cell(
         if record is None:
             return None
     record.wall = time.perf_counter() - started
-    _warn(record, prepared.config)
+    _warn(record, prepared.config, prepared.robot_cell)
     summary = summary_of(record, prepared)
     write_results(record, summary, prepared, options.out)
     return RunResult(record, summary, prepared)
@@ -453,7 +452,7 @@ def _header(supervisor: dict[str, Any]) -> dict[str, Any]:
     return {**supervisor, "by": "run"}
 
 
-def _warn(record: RunRecord, config: CellConfig) -> None:
+def _warn(record: RunRecord, config: CellConfig, cell: RobotCell) -> None:
     """Conditioning above the configured bound, in one warning a robot: where it begins and how bad it gets."""
     limit = config.report.warn_condition
     for robot in config.robots:
@@ -461,15 +460,16 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
         above = [i for i, v in enumerate(values) if v > limit]
         if above:
             worst = max(above, key=values.__getitem__)
-            elbow = math.degrees(record.series[f"elbow.{robot.name}"][worst])
-            wrist = math.degrees(record.series[f"wrist.{robot.name}"][worst])
+            elbow = record.series[f"elbow.{robot.name}"][worst]
+            wrist = record.series[f"wrist.{robot.name}"][worst]
+            straight = cell.robot(robot.name).kinematics.straightness(elbow, wrist)
             record.warnings.append(
                 RunWarning(
                     record.sample_t[above[0]],
                     robot.name,
-                    f"comes close to a singularity: condition number up to {condition_text(values[worst])}, at "
-                    f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight, "
-                    f"wrist {wrist:.1f} deg (warning above {limit:g})",
+                    "comes close to a singularity for the first time; it is closest at "
+                    f"{record.sample_t[worst]:.2f} s: condition number {condition_text(values[worst])}"
+                    f"{straight} (warning above {limit:g})",
                 )
             )
 

@@ -147,6 +147,10 @@ def _definition(body: _Piece) -> _Definition:
                 raise before.wrong(f"`{before.text}` is not expected here")
             return word, [], [], _limits(limit, several=word == "string"), False
         case "with":
+            colours = [x.strip() for x in rest.text.split(",")]
+            if len(colours) > 1 and all(map(NAME.fullmatch, colours)):
+                hint = f"colours are separated by `|`: `with {' | '.join(colours)}`"
+                raise NotReadableError(f"a name is expected, not `{rest.text}`", rest.start, hint)
             return "enum", [p.name() for p in rest.split("|")], [], [], False
         case "index":
             return word, [before.name()], [], _limits(limit, needed=before), False

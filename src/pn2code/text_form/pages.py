@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
-from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean, nearest
 from pn2code.reading.document import (
     Inscription,
     RawArc,
@@ -26,6 +27,11 @@ PORTS = {"in": "In", "out": "Out", "io": "I/O"}
 ARCS = {"in": "ptot", "out": "ttop", "both": "bothdir", "inhibit": "inhibitor", "reset": "reset"}
 """Words of arcs, as seen from the transition, and their orientations."""
 CLAUSES = {"guard": "guard", "delay": "delay", "priority": "priority", "code": "code segment"}
+_ELEMENTS = ("place", "trans", "subst")
+_OF_CODE = ("input", "output", "action")
+_MOST_SHOWN = 40
+_BESIDE = re.compile(r"([A-Za-z][\w']*)(?:\s+(?=\d)|\s*(?=[(\[]))(.+)", re.DOTALL)
+"""A colour set and something beside it that is none."""
 _OF_A_SOCKET = {"In": "ptot", "Out": "ttop"}
 
 Wrong = Callable[[Line, str, str], None]
@@ -44,7 +50,11 @@ class _Substitution:
 
 @frozen
 class _Page:
-    """What has been read of a page."""
+    """What has been read of a page.
+
+    Args:
+        unread: names of places that may be there: their lines cannot be read, and it is said of these lines.
+    """
 
     line: Line
     id: str
@@ -53,6 +63,7 @@ class _Page:
     places: list[RawPlace]
     transitions: list[RawTransition | _Substitution]
     arcs: list[RawArc]
+    unread: set[str]
 
 
 class PageReader:
@@ -73,9 +84,18 @@ class PageReader:
         self.wrong = wrong
         self.notes = notes
         self.by_name: dict[str, _Page] = {}
+        self.named: dict[str, set[str]] = {}
+        """What the places of each page are called."""
+        self.unread: set[str] = set()
+        """Pages that may be there: their lines cannot be read, and it is said of these lines."""
 
     def pages(self, lines: list[Line]) -> tuple[RawPage, ...]:
         """All pages; substitution transitions may name later ones."""
+        for line in lines:
+            called = names.take(line.text, len("page"))
+            own = [names.take(x.text, len("place")) for x in line.below if x.word == "place"]
+            found = self.named.setdefault(called[0] if called else "", set())
+            found.update(x[0] for x in own if x)
         read = [page for line in lines if (page := self.page(line)) is not None]
         return tuple(self.whole(page) for page in read)
 
@@ -87,25 +107,44 @@ class PageReader:
             return None
         name = found[0]
         origin = Origin(self.file, line.number, line.column, name)
-        page = _Page(line, self.new(), name, origin, [], [], [])
+        page = _Page(line, self.new(), name, origin, [], [], [], set())
         if (first := self.by_name.setdefault(name, page)) is not page:
             self.repeated(f"page `{name}`", origin, first.origin)
         below = [x for x in line.below if not x.is_note]
         for one in below:
             if one.word == "place":
                 self.place(page, one)
+            elif one.word not in _ELEMENTS and (taken := names.take(one.text, len(one.word))):
+                page.unread.add(taken[0])
+        before = ""
         for one in below:
             match one.word:
                 case "place":
-                    pass
+                    before = ""
                 case "trans":
                     self.transition(page, one)
+                    before = one.text
                 case "subst":
                     self.substitution(page, one)
+                    before = ""
                 case _:
-                    hint = _other(one, ("place", "trans", "subst"), _PAGE)
-                    self.wrong(one, f"nothing on a page begins with `{one.word}`", hint)
+                    self.no_element(one, before)
         return page
+
+    def no_element(self, line: Line, before: str) -> None:
+        """A line that begins nothing on a page, below that of a transition or not."""
+        word = line.word
+        if word in (*ARCS, *CLAUSES):
+            what = "an arc" if word in ARCS else f"`{word}`"
+            below = f"`{before}`" if before else "its `trans`"
+            self.wrong(
+                line,
+                f"`{word}` stands as deep as places and transitions do, but {what} belongs to a transition",
+                f"indent the line so that it is deeper than {below}",
+            )
+            return
+        hint = _other(line, _ELEMENTS, _PAGE)
+        self.wrong(line, f"nothing on a page begins with `{word}`", hint)
 
     def repeated(self, what: str, origin: Origin, first: Origin) -> None:
         """Two things of one name."""
@@ -130,13 +169,26 @@ class PageReader:
         what = f"place `{name}`"
         origin = Origin(self.file, line.number, line.column, page.name, what, identity)
         port = fusion = ""
+        page.unread.add(name)  # until all of the line has been read
         while (word := names.take(line.text, at)) is not None:
             if word[0] not in ("port", "fusion"):
-                self.wrong(line, f"`{word[0]}` is not expected after the name of a place", _PLACE)
+                rest = line.text[word[1] :].lstrip()
+                self.wrong(
+                    line,
+                    f"`{word[0]}` is not expected after the name of a place",
+                    _after_a_name(name, word[0], rest),
+                )
                 return
             value = names.take(line.text, word[1])
-            if value is None or not value[0] or (word[0] == "port" and value[0] not in PORTS):
+            if value is None or not value[0]:
                 self.wrong(line, f"`{word[0]}` needs a word after it", _PLACE)
+                return
+            if word[0] == "port" and value[0] not in PORTS:
+                self.wrong(
+                    line,
+                    f"`{value[0]}` is no kind of port",
+                    did_you_mean(value[0], PORTS, "a port is `port in`, `port out` or `port io`"),
+                )
                 return
             if port if word[0] == "port" else fusion:
                 self.wrong(line, f"place `{name}` has `{word[0]}` twice", "write one of them")
@@ -158,20 +210,37 @@ class PageReader:
                 )
             elif ";" in line.text[start:stop]:
                 self.wrong(line, "a place does not end with `;`", "leave it out")
+            if (after := _BESIDE.fullmatch(line.text[start:stop])) is not None:
+                self.wrong(
+                    line,
+                    f"`{after[2]}` is not expected after the colour set of a place",
+                    f"an initial marking follows after `=`: `: {after[1]} = {_short(after[2])}`",
+                )
+                stop = start + len(after[1])
             if start < stop:
                 kind = Inscription(SourceText(line.text[start:stop], where))
             at = end
             rest = line.text[at:]
         if rest.startswith("="):
             initial = self.inscription(line, at + 1, origin, "initial marking")
-        elif rest or line.goes_on:
+        elif not rest and line.goes_on:
+            deeper = next(x for x in line.below if not x.is_note)
+            self.wrong(
+                deeper,
+                f"the line stands deeper than that of place `{name}`, to which nothing below can belong",
+                "write it as deep as the places and transitions of the page; an initial marking follows after `=`",
+            )
+            page.unread.update(x[0] for x in [names.take(deeper.text, len(deeper.word))] if x)
+        elif rest:
             self.wrong(
                 line, "a place is written on one line, its initial marking after `=`", _PLACE
             )
         made = RawPlace(identity, name, kind, initial, port, fusion, origin, caption=name)
+        page.unread.discard(name)
         for first in page.places:
             if first.name == name:
                 self.repeated(what, origin, first.origin)
+                return
         page.places.append(made)
 
     def inscription(self, line: Line, start: int, base: Origin, part: str) -> Inscription | None:
@@ -203,6 +272,13 @@ class PageReader:
                 self.arc(page, one, word, name, identity)
             else:
                 hint = _other(one, (*ARCS, *CLAUSES), _TRANS)
+                if word in _OF_CODE:
+                    hint = f"a code segment begins with `code`: `code {_short(one.text)}`"
+                elif any(p.name == word for p in page.places):
+                    hint = f"an arc begins with its direction: `in {_short(one.text)}` or `out {_short(one.text)}`"
+                elif word in _ELEMENTS:
+                    hint = f"write it as deep as `trans {names.written(name)}`, not deeper"
+                    page.unread.update(x[0] for x in [names.take(one.text, len(word))] if x)
                 self.wrong(one, f"no arc and no clause of a transition begins with `{word}`", hint)
         page.transitions.append(
             RawTransition(
@@ -255,18 +331,27 @@ class PageReader:
         for place in page.places:
             if place.name == name:
                 return place
-        self.unknown(
-            f"page `{page.name}` has no place `{name}`", line, [p.name for p in page.places]
-        )
+        if name not in page.unread:
+            known = [p.name for p in page.places]
+            otherwise = "declare it, or correct the name"
+            elsewhere = sorted(f"`{p}`" for p, found in self.named.items() if name in found)
+            if elsewhere and nearest(name, known) == "":
+                otherwise = (
+                    f"arcs reach the places of their own page; there is one on page {', '.join(elsewhere)}: "
+                    "draw a port place here and assign it to that one, or put both into one fusion set"
+                )
+            self.unknown(f"page `{page.name}` has no place `{name}`", line, known, otherwise)
         return None
 
-    def unknown(self, message: str, line: Line, known: list[str]) -> None:
+    def unknown(self, message: str, line: Line, known: list[str], otherwise: str = "") -> None:
         """A message that ends in a name which is none of those that are known."""
         self.d.error(
             TEXT_NAME,
             message,
             Origin(self.file, line.number, line.column),
-            hint=did_you_mean(message.rsplit("`", 2)[1], known, "declare it, or correct the name"),
+            hint=did_you_mean(
+                message.rsplit("`", 2)[1], known, otherwise or "declare it, or correct the name"
+            ),
         )
 
     # --- substitution transitions ----------------------------------------------------------------
@@ -320,6 +405,7 @@ class PageReader:
                     text.origin_at(at),
                     hint=_SUBST,
                 )
+                self.unread.update(text.text[at:stop].split())
                 continue
             yield port[0], socket[0], text.origin_at(at)
 
@@ -341,6 +427,8 @@ class PageReader:
     def assigned(self, page: _Page, one: _Substitution) -> RawTransition:
         """A substitution transition with its ports, and an arc for each socket as its port has it."""
         sub = self.by_name.get(one.subpage)
+        if sub is None and one.subpage in self.unread:
+            return one.made
         if sub is None:
             self.unknown(f"the net has no page `{one.subpage}`", one.line, list(self.by_name))
             return one.made
@@ -355,6 +443,21 @@ class PageReader:
             self.draw(page, one.line, orientation, (socket, one.made.name, one.made.id), None)
         origin = one.made.origin
         return replace(one.made, substitution=RawSubstitution(sub.id, tuple(found), origin))
+
+
+def _after_a_name(name: str, word: str, rest: str) -> str:
+    """What to write instead of a place whose name is followed by a word."""
+    if word in PORTS:
+        return f"a port is written `port {word}`"
+    if not rest:
+        return f"a colour set follows after a colon, `: {word}`; a name with blanks stands between quotes"
+    if near := nearest(word, ("port", "fusion")):
+        return f"did you mean `{near}`?"
+    return f'a name with blanks stands between quotes: `place "{name} {word}" {_short(rest)}`; {_PLACE}'
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."
 
 
 def _other(line: Line, words: Sequence[str], otherwise: str) -> str:

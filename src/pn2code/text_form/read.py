@@ -61,6 +61,7 @@ _BLOCK_WORDS = re.compile(r"(?<![\w'])(let|local|struct|sig|end)(?![\w'])")
 _UNPRINTED = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 """Characters that a file of CPN Tools cannot have."""
 
+_WORD = re.compile(r"[A-Za-z][\w']*")
 _OPTIONS = {"realtimestamp": ("true", "false")}
 
 
@@ -117,6 +118,8 @@ class _Reader:
         self.count = 0
         self.options: dict[str, str] = {}
         self.notes: list[Line] = []
+        self.unread: set[str] = set()
+        """Words of lines that cannot be read: what is declared there may have these names."""
 
     def new(self) -> str:
         """An id, as CPN Tools has them."""
@@ -127,6 +130,8 @@ class _Reader:
         """A line that cannot be read."""
         origin = Origin(self.file, line.number, column or line.column)
         self.d.error(TEXT_SYNTAX, message, origin, hint=hint)
+        for one in (line, *line.deeper()):
+            self.unread.update(_WORD.findall(one.text))
 
     def document(self, text: str, sha256: str) -> Document:
         root, unclosed = lines_of(text)
@@ -149,6 +154,7 @@ class _Reader:
         pages_of = [x for x in lines if x.word == "page"]
         items = self.items([x for x in lines if x.word != "page"], is_top=True)
         reader = PageReader(self.file, self.d, self.new, self.wrong, self.notes)
+        reader.unread = self.unread
         pages = reader.pages(pages_of)
         if not pages:
             self.d.error(
@@ -168,6 +174,7 @@ class _Reader:
             fusions=fusions_of(pages, self.new),
             options=self.options,
             elements=_counts(pages),
+            unread=frozenset(self.unread),
         )
 
     # --- declarations ----------------------------------------------------------------------------
@@ -273,6 +280,7 @@ class _Reader:
                 found.append(self.one(piece))
             except NotReadableError as e:
                 self.d.error(TEXT_SYNTAX, e.message, piece.origin_at(e.at), hint=e.hint)
+                self.unread.update(_WORD.findall(piece.text))
         return found
 
     def one(self, text: SourceText) -> RawDeclaration:

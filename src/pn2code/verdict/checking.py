@@ -16,7 +16,7 @@ from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
 from pn2code.input_files import begin
-from pn2code.net import emptiness, front
+from pn2code.net import emptiness, free_variables, front
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
 
@@ -76,7 +76,11 @@ def check(
         partition = examine_cell(file, config, result, d, inputs=inputs, kept=kept)
         if partition is not None:
             channels = rows(partition, config)
+            own = {i for i, owner in enumerate(partition.transition_owner) if owner == 0}
+            free_variables.remark(partition.net, d, own)
     else:
+        if result.flat is not None:
+            free_variables.remark(result.flat, d)
         _properties(file, None, result, d)
         if inputs is not None and result.flat is not None:
             begin(result.flat, None, d, given=inputs)

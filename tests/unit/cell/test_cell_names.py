@@ -25,6 +25,8 @@ MISTAKES = {
                         "did you mean `Finished`?"),
     "final: a place of a robot": (FINAL, 'final = ["Over"]', "cell-final", "belongs to robot `robot1`", "transition"),
     "final: a channel": (FINAL, 'final = ["done"]', "cell-final", "is shared with robot `robot1`", "transition"),
+    "supervisor: the page above all": ('instance = "Supervisor"', 'instance = "Top"', "cell-owner",
+                                       "would both own page instance `Top/", "has the pages of both below it"),
     "final: twice": (FINAL, 'final = ["Finished", "Finished"]', "cell-value", "names `Finished` twice", "remove"),
     "final: twice by path": (FINAL, 'final = ["Finished", "Supervisor.Finished"]', "cell-value", "twice", "remove"),
     "final: a number": (FINAL, "final = [3]", "cell-value", "`final` holds `3`", ""),

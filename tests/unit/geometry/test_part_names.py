@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Planner
-from pn2code.geometry.part_names import as_in_runs, as_seen, held, on_plate, standing
+from pn2code.geometry.part_names import as_in_runs, as_seen, held, on_plate, standing, told
 from pn2code.geometry.shown import Shown
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
@@ -64,3 +64,17 @@ def test_two_that_move_together_may_have_one_name_in_runs() -> None:
     scene, _ = Comparison(cell, planner, Shown(backend)).around(leg, tuple(both))
     backend.close()
     assert scene.outcome == "clear"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("arm/link_3", "`arm/link_3`"),
+        (f"arm/{held('blank.1', 'arm')}", "`blank.1` (a part, held by `arm`)"),
+        (f"arm/{held('gripper', 'arm')}", "`gripper` (a tool, held by `arm`)"),
+        (standing("blank.2"), "`blank.2` (a part, which stands there)"),
+        (on_plate("blank.2", "left/plate", 3), "`blank.2` (a part, on a belt or turntable)"),
+    ],
+)
+def test_it_is_said_what_comes_near(name: str, words: str) -> None:
+    assert told(name) == words

@@ -129,7 +129,7 @@ def test_singularity_is_a_fault_on_a_line_only(monitor, home):
     assert monitor.check(0.0, q, kinds={"robot1": "ptp"}).fault is None
     fault = monitor.check(1.0, q, kinds={"robot1": "lin"}).fault
     assert fault.kind == "singularity"
-    assert "wrist 0.0 deg" in fault.message
+    assert "wrist 0.0 deg from straight" in fault.message
 
 
 def test_expecting_positions_changes_no_answer(cell, backend, home):

@@ -480,3 +480,51 @@ def test_where_flanges_come_is_as_the_manual_says(root: Path) -> None:
         bent = np.hypot(*places[:, :2].T)
         straight = kinematics.forward(np.zeros(4))[0, 3]
         assert (bent.min().round(3), round(float(straight), 3)) == (0.163, 0.6)
+
+
+def pose_out_of_reach(name: str, pose: Pose) -> str:
+    """What is said of a pose that the arm does not reach, in its own base."""
+    with pytest.raises(MotionFault) as found:
+        executor(name).begin(MoveJoint(pose), 0.0)
+    return found.value.message
+
+
+@pytest.mark.parametrize(
+    ("name", "pose", "limit"),
+    [
+        # The links of the SCARA are 325 and 275 mm long, and its tool hangs down wherever it is.
+        (
+            "cobra_s600",
+            Pose(0.8, 0.0, 0.2, math.pi, 0.0, 0.0),
+            "with the tool turned so: at most 6",
+        ),
+        (
+            "cobra_s600",
+            Pose(0.03, 0.0, 0.2, math.pi, 0.0, 0.0),
+            "with the tool turned so: at least 50 mm)",
+        ),
+        (
+            "lrmate200id",
+            Pose(5.0, 0.0, 0.4, 0.0, 0.5 * math.pi, 0.0),
+            "with the tool turned so: at most ",
+        ),
+    ],
+)
+def test_out_of_reach_says_how_far_the_arm_reaches(name: str, pose: Pose, limit: str) -> None:
+    said = pose_out_of_reach(name, pose)
+    assert "the pose is out of reach: " in said
+    assert limit in said
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("cobra_s600", ", elbow 5.7 deg from straight"),
+        ("gantry_3000", ""),
+        ("iiwa14_r820", ", elbow 5.7 deg, wrist 11.5 deg from straight"),
+        ("lrmate200id", ", elbow 5.7 deg, wrist 11.5 deg from straight"),
+    ],
+)
+def test_only_what_an_arm_has_is_straight(name: str, told: str) -> None:
+    """A SCARA has no wrist, a gantry not even an elbow."""
+    assert kinematics(name).straightness(0.1, 0.2) == told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from pathlib import Path
@@ -14,14 +15,17 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from pn2code.cell.config import ReportConfig
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.report import album, charts
 from pn2code.report.activities import activities, busy_seconds
 from pn2code.report.album import Album
 from pn2code.report.summary import KINDS, page, summarise
 from pn2code.robot.commands import MoveExternal, MoveHome, ToolAction
+from pn2code.robot.kinematics import Kinematics
+from pn2code.robot.model import find_arm
 from pn2code.run.cell import _warn
 from pn2code.run.command_words import kind_and_label
-from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord
+from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord, RunWarning
 
 ROBOTS = ("arm", "mill")
 
@@ -130,14 +134,31 @@ def test_a_run_that_measures_no_clearances_has_no_empty_chart_of_them(
     assert only.get_xlabel() == "simulated time [s]"
 
 
-def test_warnings_say_how_deep_and_both_angles(record: RunRecord) -> None:
+def test_the_screen_says_whose_a_warning_is_and_when(record: RunRecord) -> None:
+    record.warnings = [RunWarning(5.0, "arm", "comes close to the table")]
+    shown = io.StringIO()
+    Console(file=shown, width=120).print(page(summarise(record, ReportConfig(), ROBOTS, {})))
+    assert "warning at 5.00 s, arm: comes close to the table" in shown.getvalue()
+
+
+def test_warnings_say_how_deep_both_angles_and_what_each_time_is(record: RunRecord) -> None:
     record.series |= {"condition.arm": [7.0, 90.0, 40.0], "elbow.arm": [1.0, 1.2, 1.0]}
     record.series |= {"wrist.arm": [1.0, 0.02, 1.0]}
     record.near = {("arm/link_2", "table"): (-0.0046, 5.0), ("arm/link_3", "table"): (0.004, 6.0)}
-    arm = SimpleNamespace(name="arm")
-    _warn(record, SimpleNamespace(robots=[arm], report=ReportConfig(warn_condition=50.0)))  # type: ignore[arg-type]
+    d = Diagnostics()
+    model = find_arm("lrmate200id", Path(), Origin("cell.toml"), d)
+    assert model is not None
+    kinematics = Kinematics.of(model, None, Origin("cell.toml"), d)
+    arm = SimpleNamespace(name="arm", kinematics=kinematics)
+    cell = SimpleNamespace(robot=lambda _: arm)
+    config = SimpleNamespace(robots=[arm], report=ReportConfig(warn_condition=50.0))
+    _warn(record, config, cell)  # type: ignore[arg-type]
     said = [w.text for w in record.warnings]
-    assert "up to 90, at 10.00 s, elbow 68.8 deg from straight, wrist 1.1 deg" in said[0]
+    assert said[0] == (
+        "comes close to a singularity for the first time; it is closest at 10.00 s: condition number 90, "
+        "elbow 68.8 deg, wrist 1.1 deg from straight (warning above 50)"
+    )
+    assert record.warnings[0].t == 10.0
     assert said[1:] == [
         "`arm/link_2` is 4.6 mm deep in `table`",
         "`arm/link_3` comes within 4.0 mm of `table`",

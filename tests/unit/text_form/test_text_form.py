@@ -320,7 +320,7 @@ MISTAKES = {
         "nothing more on its line",
         "below `trans T`",
     ),
-    "a port of no kind": ("page T\n  place A port into\n", 2, "`port` needs", "port in"),
+    "a port of no kind": ("page T\n  place A port into\n", 2, "`into` is no kind of port", "did"),
     "a word after a place": (
         "page T\n  place A timed : INT\n",
         2,

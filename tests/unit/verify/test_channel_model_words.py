@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pn2code.channel_model.check import Answer, Evidence
+from pn2code.channel_model.check import Answer, Evidence, _and_alike
 from pn2code.channel_model.faults import Fault
 from pn2code.verdict.channel_model import rows, shown, told
 
@@ -33,3 +33,19 @@ def test_what_fails_is_named(given: Answer, says: str) -> None:
     (row,) = rows((given,))
     assert f"what fails: {says}" in row["remarks"]
     assert not any("not known" in str(r) for r in row["remarks"])
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        ([], ""),
+        (["belt"], " (and with belt, whose messages are of the same kinds)"),
+        (["belt", "eye"], " (and with belt and eye, whose messages are of the same kinds)"),
+        (
+            [f"r{i}" for i in range(8)],
+            " (and with r0, r1, r2, r3, r4, r5 and 2 more, whose messages are of the same kinds)",
+        ),
+    ],
+)
+def test_an_exchange_names_those_for_which_it_stands(names: list[str], told: str) -> None:
+    assert _and_alike(names) == told

@@ -12,11 +12,15 @@ HEAD = """
     net Stuck
       standard
       colset TIMED = int timed;
+      colset PAIR = product INT * INT;
       var n, m : INT;
       place A : INT = 1`1
       place B : INT
       place C : INT
       place Clock : TIMED = 1`7
+      place D : UNIT = 3`()
+      place E : INT = 1`2 ++ 1`3
+      place F : PAIR = 1`(4, 5)
 """
 
 
@@ -29,11 +33,32 @@ HEAD = """
             "trans T guard [n > 3, m = n + 1]\n  in A : n\n  out B : m",
             "its guard `n > 3, m = n + 1` is false for the tokens that are there",
         ),
-        ("trans T\n  in A : 2", "the tokens in `A` are not those that its arcs take"),
-        ("trans T\n  in A : 2`n", "the tokens in `A` are not those that its arcs take"),
+        ("trans T\n  in A : 2", "place `A` holds 1`1, its arc takes 1`2"),
+        ("trans T\n  in A : 2`n", "with n = 1 place `A` holds 1`1, its arc takes 2`1"),
+        ("trans T\n  in A : 1\n  in D : 4`()", "place `D` holds 3`(), its arc takes 4`()"),
+        (
+            "trans T\n  in A : n\n  in D : n`()\n  in D : 3`()",
+            "with n = 1 place `D` holds 3`(), its arcs take 4`()",
+        ),
+        (
+            "trans T\n  in E : n\n  in D : (n+2)`()",
+            "the tokens in `E` and `D` are not those that its arcs take together",
+        ),
+        (
+            "trans T\n  in A : n\n  in F : (n, 7)\n  in D : ()",
+            "with n = 1 place `F` holds 1`(4,5), its arc takes 1`(1,7)",
+        ),
+        (
+            "trans T\n  in A : n\n  in F : (n, m)\n  in D : ()",
+            "the tokens in `A` and `F` are not those that its arcs take together",
+        ),
+        (
+            "trans T\n  in A : 2\n  in D : 4`()\n  in E : n",
+            "the tokens in `A` and `D` are not those that its arcs take together",
+        ),
         (
             "trans T guard [n > 0]\n  in A : n\n  in Clock : n",
-            "the tokens in `A` and `Clock` are not those that its arcs take",
+            "the tokens in `A` and `Clock` are not those that its arcs take together",
         ),
         ("trans T\n  in A : n\n  inhibit Clock", "place `Clock` inhibits it"),
     ],

@@ -309,7 +309,7 @@ def syntax(
                 return "a record is written {field = value, ..}; a list is written [..], a multi-set 1`v ++ 1`w"
             numbers = last == "INT" and len(after) == 1 and after[0].kind == "INT"
             if numbers and start == "expression" and len(before) == 1:
-                return "a decimal number is written with a point: 2.5"
+                return "a decimal number is written with a point: 2.5; several tokens are added with `++`: 1`1 ++ 1`2"
             if start == "expression" and not _open(before):
                 return (
                     "a tuple needs parentheses: (a, b); multi-sets are added with `++`: 1`a ++ 1`b"

@@ -17,6 +17,7 @@ from pn2code.ml.library.builtin_table_sized import INTEGERS, WORD_BITS
 from pn2code.ml.library.datatypes import DATATYPES, LITERAL_TYPES, WORD_TYPES
 from pn2code.ml.library.exceptions import FIRST_EXCEPTION_TAG
 from pn2code.ml.library.schemes import scheme
+from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.advice import BY_CODE, CLOSE
 from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.environment import Binding, ConEntry, Scope, library_scope
@@ -41,6 +42,7 @@ from pn2code.ml.typing.inference import (
 MAX_DEPTH = 250
 """Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
 
+_MOST_COLOURS = 8
 _ENDS = {
     **{name: 1 << bits for name, bits in WORD_BITS.items()},
     **{f"{name}.int": 1 << (bits - 1) for name, bits in INTEGERS.items()},
@@ -83,6 +85,8 @@ class Context:
         top: scope of the top-level declarations.
         errors: number of errors reported here (`d` keeps equal ones once).
         depth: nesting of the expression being looked at.
+        expected: the type that a name must have which is looked up, if that is known.
+        token: of an arc or a marking the inscription, and the type of a token.
         unknown: names reported as not declared in this text; each is reported once.
         net_variables: names of the net's variables, for advice where they are not in scope.
         tainted: set when something is used whose declaration had an error.
@@ -109,6 +113,8 @@ class Context:
     errors: int = 0
     depth: int = 0
     unknown: set[str] = field(default_factory=set)
+    expected: Ty | None = None
+    token: tuple[s.Exp, Type] | None = None
     net_variables: set[str] = field(default_factory=set)
     open_records: list[tuple[Meta, Span]] = field(default_factory=list)
     weak: list[Ty] = field(default_factory=list)
@@ -376,11 +382,26 @@ class Context:
                     span,
                     label=f"this is `{shown}`",
                     notes=notes,
-                    hint=type_advice.wrong_operand(what, found, span.text)
+                    hint=type_advice.wrong_operand(what, found, span.text, expected)
                     or conversion(found, (_name(expected),))
                     or self.constructor_hint(found, expected, span.text)
                     or type_advice.wrong_value(found, expected, span.text, what),
                 )
+
+    def colours_hint(self, name: str, expected: Ty | None) -> tuple[str, str]:
+        """For a name that is none, where a value of `expected` belongs: a colour that is like it, and all colours."""
+        wanted = prune(expected) if expected is not None else None
+        if not isinstance(wanted, ICon) or wanted.name not in self.colsets:
+            return "", ""
+        datatype = self.datatypes.get(wanted.name)
+        if datatype is None:
+            return "", ""
+        values = [c.name for c, argument in datatype.constructors if argument is None]
+        if not values:
+            return "", ""
+        listed = ", ".join(f"`{v}`" for v in values[:_MOST_COLOURS])
+        listed += ", ..." if len(values) > _MOST_COLOURS else ""
+        return suggestion(name, values), f"a value of `{datatype.name}` belongs here: {listed}"
 
     def constructor_hint(self, found: Ty, expected: Ty, text: str) -> str:
         """For the argument of a constructor without the constructor."""

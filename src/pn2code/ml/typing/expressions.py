@@ -101,6 +101,10 @@ class Expressions:
                 draft = self._apply(e, t)
             case s.InfixExp():
                 draft = self._infix(e, t)
+            case s.NameExp():
+                self._ctx.expected = t
+                draft = self.infer(e)
+                self._ctx.expected = None
             case _:
                 draft = self.infer(e)
         if not self._ctx.unify(draft.type, t, e.span, what):

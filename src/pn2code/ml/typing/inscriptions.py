@@ -132,7 +132,9 @@ class Inscriptions:
             )
         with self._scope(scope, on_page=bool(text.origin.part)), self._one_mistake():
             before = self._ctx.errors
+            self._ctx.token = (exp, types[0]) if types else None
             found = self._first(exp, types)
+            self._ctx.token = None
             if isinstance(found, tuple):
                 return self._finish(before, lambda: (found[0], found[1].build()))
             if self._ctx.errors == before and not self._ctx.tainted:

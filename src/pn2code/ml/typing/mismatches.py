@@ -53,7 +53,7 @@ def explain(
             f"{what} has a time stamp, but the colour set `{expected_name}` is not timed",
             delayed[0].operator.span if delayed else exp.span,
             label="delay" if delayed else f"this is `{ctx.show(found)}`",
-            hint=f"declare it so, `colset {expected_name} = .. timed;`, or leave the time out",
+            hint=_timed_instead(ctx, expected_name, structure),
         )
         return
     quiet, ctx.d = ctx.d, Diagnostics()
@@ -125,3 +125,26 @@ def _is_timed(t: Ty) -> bool:
     if isinstance(t, ICon) and t.name == "list":
         t = prune(t.args[0])
     return isinstance(t, ICon) and t.name == "timed"
+
+
+_STANDARD = frozenset({"UNIT", "BOOL", "INT", "INTINF", "TIME", "REAL", "STRING"})
+"""Colour sets of each new net, which other places have as well."""
+
+
+def _timed_instead(ctx: Context, name: str, structure: str) -> str:
+    """What to do about a time stamp where the colour set has none."""
+    own = ctx.colsets.get(name)
+    timed = [
+        n for n, c in ctx.colsets.items()
+        if c is not None and own is not None and c.timed and c.type == own.type
+        and definition(c.whole) == definition(own.whole)
+    ]  # fmt: skip
+    if timed:
+        near = " or ".join(f"`{n}`" for n in timed[:2])
+        return f"give the place the timed colour set {near}, or leave the time out"
+    if name in _STANDARD:
+        return (
+            f"declare one that is, `colset T{name} = {structure or name.lower()} timed;`, and give the place that; or "
+            "leave the time out"
+        )
+    return f"declare it so, `colset {name} = .. timed;`, or leave the time out"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import INT, UNIT, TFun, Type
+from pn2code.ml.core.types import INT, UNIT, TFun, TRecord, Type
 from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS, word_type
 from pn2code.ml.library.builtins import BUILTINS, OVERLOADED
 from pn2code.ml.library.datatypes import NIL
 from pn2code.ml.parsing import advice
+from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.parser import declared_names
 from pn2code.ml.typing.colset_members import member_type, members_of, timed_member
 from pn2code.ml.typing.context import BROKEN, Context, Draft, quoted, suggestion
@@ -253,11 +254,17 @@ class Names:
         elif not name[0].isalpha():
             hint = advice.adjacent_symbols(name, self._ctx.scope.names())
         else:
+            near, colours = self._ctx.colours_hint(name, self._ctx.expected)
+            if not colours and self._ctx.token is not None:
+                expected = _expected_at(*self._ctx.token, span.start)
+                near, colours = self._ctx.colours_hint(name, expected)
             hint = (
                 advice.behind_slashes(span.source.text[: span.start])
+                or near
                 or advice.unbound_word(name, self._ctx.colsets)
                 or self._order_hint(name, span)
                 or suggestion(name, self._ctx.scope.own_names(), self._library_names(name))
+                or (colours and _colour_or_variable(colours, name, span))
             )
             if name in self._ctx.net_variables:
                 hint = advice.variable_out_of_scope(span.source.origin.part)
@@ -300,6 +307,35 @@ class Names:
         if isinstance(variable, Binding):
             return f"a field of a record is selected with `#{member} {structure}`"
         return advice.unbound_path(structure, member, self._ctx.colsets, BUILTINS)
+
+
+def _colour_or_variable(colours: str, name: str, span: Span) -> str:
+    """The colours that fit, and the variable that may be missing where there can be one."""
+    if span.source.origin.part in ("initial marking", "declaration", "priority"):
+        return colours
+    return f"{colours}; or a variable of it: `var {name} : C;`"
+
+
+def _expected_at(exp: s.Exp, token: Type, start: int) -> Ty | None:
+    """The type that the name which begins at an offset of an inscription must have, where the token has one."""
+    todo: list[tuple[s.Exp, Type]] = [(exp, token)]
+    while todo:
+        e, t = todo.pop()
+        match e:
+            case s.NameExp() if e.span.start == start:
+                return from_type(t, [])
+            case s.RecordExp() if isinstance(t, TRecord):
+                fields = dict(t.fields)
+                todo += [(x, fields[label]) for label, x in e.fields if label in fields]
+            case s.InfixExp() if e.operator.name in ("++", "+++"):
+                todo += [(e.left, t), (e.right, t)]
+            case s.InfixExp() if e.operator.name == "`":
+                todo.append((e.right, t))
+            case s.InfixExp() if e.operator.name.startswith("@"):
+                todo.append((e.left, t))
+            case s.IfExp():
+                todo += [(e.then, t), (e.otherwise, t)]
+    return None
 
 
 def _replace_int(t: Ty, by: Ty) -> Ty:

@@ -41,8 +41,8 @@ def base(t: Ty) -> str:
     return t.name if isinstance(t, ICon) else ""
 
 
-def wrong_operand(what: str, found: Ty, text: str) -> str:
-    """For an operand (or argument) of the wrong type; `text` is what stands there."""
+def wrong_operand(what: str, found: Ty, text: str, wanted: Ty | None = None) -> str:
+    """For an operand (or argument) of the wrong type; `text` is what stands there, `wanted` the one type that fits."""
     name, kind = operand(what), base(found)
     if kind == "ref" and name not in ("", ":=", "=", "<>"):
         return f"this is a reference: its value is `!{text}`" if text.isidentifier() else ""
@@ -64,6 +64,21 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
             if text.startswith("not "):
                 return f"functions are applied before operators: `not ({text[4:]} {name} ..)`"
             return f"write each comparison separately: `{text} andalso ..`"
+        case "<" | ">" | "<=" | ">=" if (
+            found_is_named(found) and wanted is not None and what.startswith("right")
+        ):
+            left = base(wanted)
+            return (
+                f"both sides are of one type, and the left one is `{left}`; two colours of `{kind}` are compared with "
+                f"`=`, or `{kind}.lt (a, b)`"
+                if left and kind
+                else "both sides are of one type"
+            )
+        case "=" | "<>" if (
+            wanted is not None and what.startswith("right") and base(wanted) and kind
+            and (found_is_named(found) or found_is_named(wanted))
+        ):  # fmt: skip
+            return f"both sides of `{name}` are of one type, and the left one is `{base(wanted)}`"
         case "<" | ">" | "<=" | ">=" if found_is_named(found):
             return f"the order of the colours of a colour set is `{kind or 'C'}.lt (a, b)`"
         case "==" if kind != "list":

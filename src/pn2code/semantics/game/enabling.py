@@ -265,6 +265,16 @@ class Enabling:
                     continue
             yield choice
 
+    def matching(self, t: FlatTransition, marking: Marking, place: int) -> Iterator[Binding]:
+        """What the patterns of a place's arcs give by themselves, whatever the other places hold."""
+        for step in t.plan:
+            if isinstance(step, BindTerm) and t.arcs[step.arc].place == place:
+                arc = t.arcs[step.arc]
+                for found in self._match_tokens(arc, step.term, marking, self.constants, True):
+                    own = {s: found[s.uid] for s in t.variables if s.uid in found}
+                    if self._are_legal(list(own), found):
+                        yield own
+
     def _colours_in(self, place: int, tokens: PlaceMarking) -> list[Value]:
         """The different colours that a place holds, in order; asked again and again while it holds the same."""
         before, found = self._in_order.get(place, (None, []))

@@ -4,6 +4,7 @@
     `StartPress` cannot occur: place `placed` is empty.
 
     `Feed` cannot occur: place `TableFree` is empty, which it was not at the start.
+    `Finish` cannot occur: place `Cleans` holds 2`(), its arc takes 3`().
 
 A transition that could occur if its empty places held what they held at the start comes first: somebody did not give
 back what he took. A transition none of whose input places holds a token is not worth a line. Nor is one whose only
@@ -16,17 +17,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from itertools import islice
 
-from pn2code.net.flat import ArcKind, FlatArc, FlatTransition
-from pn2code.semantics.game.enabling import Enabling
-from pn2code.semantics.game.marking import Marking
+from pn2code.ml.core.terms import Symbol
+from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatTransition
+from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.game.marking import Binding, Marking, place_text, variable_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import MlException
+from pn2code.semantics.values.multiset import MultiSet
 
 MOST_REASONS = 3
 """So many transitions are named."""
 _MOST_TEXT = 60
-"""Characters of a guard."""
+"""Characters of a guard, or of tokens."""
+_MOST_BINDINGS = 1_000
+"""So many are asked which places hold too little for them."""
 
 
 def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[str]:
@@ -96,9 +103,9 @@ def _lack(game: Game, t: FlatTransition, empty: list[int]) -> str:
     """What keeps the transition from occurring, as a clause."""
     if empty:
         names = [f"`{game.net.places[p].short}`" for p in empty]
-        if len(names) == 1:
-            return f"place {names[0]} is empty"
-        return f"places {', '.join(names[:-1])} and {names[-1]} are empty"
+        return (
+            f"place {names[0]} is empty" if len(names) == 1 else f"places {_and(names)} are empty"
+        )
     marking = game.marking
     for arc in t.arcs:
         if arc.kind is ArcKind.INHIBITOR and game.enabling.inhibited(arc, marking):
@@ -107,8 +114,81 @@ def _lack(game: Game, t: FlatTransition, empty: list[int]) -> str:
         guards = ", ".join(" ".join(g.span.text.split()) for g in t.guards)
         shown = guards if len(guards) <= _MOST_TEXT else f"{guards[: _MOST_TEXT - 3]}..."
         return f"its guard `{shown}` is false for the tokens that are there"
-    places = dict.fromkeys(f"`{game.net.places[a.place].short}`" for a in _inputs(t))
-    return f"the tokens in {' and '.join(places)} are not those that its arcs take"
+    return _unfit(game, t)
+
+
+def _unfit(game: Game, t: FlatTransition) -> str:
+    """Which places hold other tokens than the arcs take, as a clause; all have some."""
+    net, enabling, marking = game.net, game.enabling, game.marking
+    outputs = t.code.outputs if t.code else ()
+    least: list[tuple[int, ...]] = []
+    shortest: list[str] = []
+    for binding in islice(enabling.bindings(t, marking), _MOST_BINDINGS):
+        own = {s: v for s, v in binding.items() if s not in outputs}
+        by_place: dict[int, list[Demand]] = {}
+        for demand in enabling.demands(t, own):
+            by_place.setdefault(demand.place, []).append(demand)
+        lacking = tuple(
+            p
+            for p, wanted in by_place.items()
+            if isinstance(enabling.take(marking, wanted), Demand)
+        )
+        if lacking and (not least or len(lacking) < len(least[0])):
+            least, shortest = [], []
+        if lacking and (not least or len(lacking) == len(least[0])):
+            least.append(lacking)
+            is_one = len(lacking) == 1
+            shortest.append(_shortage(game, t, by_place[lacking[0]], own) if is_one else "")
+    if len(dict.fromkeys(shortest)) == 1 and shortest[0]:
+        return shortest[0]
+    places = dict.fromkeys(p for lacking in least for p in lacking)
+    if places:  # what they lack depends on what lies in the places that give the variables
+        wanted = {s for a in _inputs(t) if a.place in places for s in _variables(t, a)}
+        givers = {a.place for a in _inputs(t) if wanted & _variables(t, a)}
+        places = dict.fromkeys(a.place for a in _inputs(t) if a.place in {*places, *givers})
+    else:  # no tokens match the patterns together
+        patterns = dict.fromkeys(t.arcs[x.arc].place for x in t.plan if isinstance(x, BindTerm))
+        alone = [p for p in patterns if next(enabling.matching(t, marking, p), None) is None]
+        places = dict.fromkeys(alone[:1] or patterns or (a.place for a in _inputs(t)))
+    names = [f"`{net.places[p].short}`" for p in places]
+    arcs = "arcs take" if len([a for a in _inputs(t) if a.place in places]) != 1 else "arc takes"
+    together = " together" if len(names) > 1 else ""
+    return f"the tokens in {_and(names)} are not those that its {arcs}{together}"
+
+
+def _variables(t: FlatTransition, arc: FlatArc) -> set[Symbol]:
+    """The variables of the transition in what an arc takes."""
+    terms = arc.inscription.terms if arc.inscription is not None else ()
+    return {s for x in terms for e in (x.coefficient, x.value) for s in variables(e)} & {
+        *t.variables
+    }
+
+
+def _shortage(game: Game, t: FlatTransition, wanted: list[Demand], binding: Binding) -> str:
+    """What a place holds, and what is taken from it; "" where that is long, or about times."""
+    place = game.net.places[wanted[0].place]
+    tokens = game.marking.places[place.index]
+    if not isinstance(tokens, MultiSet):
+        return ""
+    taken = MultiSet({})
+    for demand in wanted:
+        taken = taken + MultiSet({demand.value: demand.count})
+    colours = game.enabling.colours
+    held, takes = (" ".join(place_text(colours, place.colset, x).split()) for x in (tokens, taken))
+    if len(held) > _MOST_TEXT or len(takes) > _MOST_TEXT:
+        return ""
+    arcs = [a for a in _inputs(t) if a.place == place.index]
+    take = "its arcs take" if len(arcs) > 1 else "its arc takes"
+    used = {s for a in arcs for s in _variables(t, a)}
+    values = [f"{s.name} = {variable_text(colours, s, v)}" for s, v in binding.items() if s in used]
+    given = f"with {', '.join(values)} " if values else ""
+    if len(given) > _MOST_TEXT:
+        return ""
+    return f"{given}place `{place.short}` holds {held}, {take} {takes}"
+
+
+def _and(names: list[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _is_possible_without_guards(game: Game, t: FlatTransition) -> bool:

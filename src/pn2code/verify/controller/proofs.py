@@ -22,6 +22,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.place_finder import PlaceFinder
 from pn2code.diagnostics import Diagnostics, Note
+from pn2code.net.flat import BindAll, BindRandom
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
@@ -245,14 +246,31 @@ def _refuse(
         f"{check.name}: {check.says}",
         at[0] if at else final if is_end else config.supervisor.origin,
         notes=[n for n in notes if n],
-        hint=_HINTS.get(check.name, _HINT),
+        hint=_hint(check, partition),
     )
 
 
+def _hint(check: Check, partition: Partition) -> str:
+    """What to do; priorities choose between transitions, not between the bindings of one."""
+    if check.name != control_types.CONFLUENT or len(set(check.transitions)) != 1:
+        return _HINTS.get(check.name, _HINT)
+    t = next(t for t in partition.net.transitions if t.name == check.transitions[0])
+    free = [x.symbol.name for x in t.plan if isinstance(x, BindAll | BindRandom)]
+    if free:
+        listed = " and ".join(f"`{name}`" for name in free)
+        which = f"{listed} is bound by no arc: put it on an input arc, or write a guard `{free[0]} = ...`"
+    else:
+        which = "let a guard, or what its input arcs take, leave one binding only"
+    return f"{which}; {_INTENDED}"
+
+
 _HINT = "`pn2code verify` on the cell writes the run that shows it; `--unchecked` goes on without these checks"
+_INTENDED = (
+    'or say in cell.toml that the documented order is intended: `order = "documented"` in [supervisor]; '
+    "`--unchecked` goes on without these checks"
+)
 _HINTS = {
-    control_types.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented "
-    'order is intended: `order = "documented"` in [supervisor]; `--unchecked` goes on without these checks',
+    control_types.CONFLUENT: f"give the transitions different priorities, {_INTENDED}",
 }
 _SHOWN = 4
 
