@@ -147,7 +147,8 @@ def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> No
     net = NET.replace("      TAKE\n", "      in Free : ()\n", 1)
     net = net.replace("      GIVE\n", "      out Free : ()\n", 1)
     cell = meeting_cell(tmp_path / "cell", guarded=False, net=net)
-    (proposal,) = looked(cell)["proposals"]
+    told = tell(cell, tmp_path)
+    (proposal,) = told.layout["proposals"]
     assert proposal["works"], proposal
     assert (proposal["place"], proposal["place_is_there"]) == ("Top.Supervisor.Free", True)
     assert proposal["takes"] == ["Top.Supervisor.Send2"]
@@ -155,7 +156,7 @@ def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> No
     (served,) = proposal["served"]
     assert served["during"] == ["Top.Robot1.Visit1"]
     assert served["but_not"] == ["Top.Robot2.Visit2"]
-    said = CliRunner().invoke(app, ["check", "--geometry", str(cell)]).stdout
+    said = told.command().stdout
     assert "(robot1 and robot2) share a zone" in said
     assert (
         "the token of `Top.Supervisor.Free` is away whenever `Top.Robot1.Visit1` is under way, "
