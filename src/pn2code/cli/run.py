@@ -170,6 +170,7 @@ def run(
     from pn2code.replay.motion import Motion
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
+    from pn2code.run.alone import alone_in
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
@@ -234,6 +235,7 @@ def run(
             observers.append(view)
         wish = Interrupts()
         with trouble_told(out), ExitStack() as running:
+            stack.enter_context(alone_in(out))
 
             def ready(prepared: Prepared) -> None:
                 if view is not None:

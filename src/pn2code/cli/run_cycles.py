@@ -42,6 +42,7 @@ def run_many(
 ) -> None:
     """Runs a cell so often, prints what came of it, and leaves with code 1 if a run did not come to its end."""
     from pn2code.replay.motion import Motion
+    from pn2code.run.alone import alone_in
     from pn2code.run.cycles import Keeping, run_cycles, table
 
     kept: dict[Path, tuple[RunResult, Motion]] = {}
@@ -50,7 +51,7 @@ def run_many(
         kept[folder] = result, motion
 
     d = Diagnostics()
-    with trouble_told(options.out):
+    with trouble_told(options.out), alone_in(options.out):
         with Line(shown=True, plain=False, first="generating and building") as line:
             found = run_cycles(cell, options, plan, d, line.say, Keeping(Motion, keep))
         if found is None:
