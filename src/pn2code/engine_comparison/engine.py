@@ -16,7 +16,9 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
 | a variable twice in one pattern: `(x, x)` | takes a wrong binding, then `Internal Error: rm ...` | requires both parts to be equal |
 | a guard equation with a variable twice on one side, of which no side is a pattern with variables: `[x * x = 4]`, `[#1 p + #2 p = 3]` | `InternalError: fun get_vids`, the page cannot be checked | tests it, with a warning (`guard-equation-repeats`) |
-| something that may raise an exception beside another condition: `[length l > 0, m = hd l]` | may compute it first, and stops, whatever the other condition is | asks in the order that docs/semantics.md says, with a warning (`guard-order`) |
+| a guard equation that gives a variable a value outside its colour set: `[s = n + 5]`, `s` of `int with 0..3` | binds it without a look; stops if it comes into a place that cannot hold it | there is no such binding; `verify` says *not known* |
+| `Bind` raised by a guard (`let val (x :: _) = [] in x end`) before any token is tried or an equation has bound: `[f s > 0]` with all values of `s` | stops with `Bind`; elsewhere there is no binding | there is no binding; `verify` says *not known* |
+| something that may raise an exception beside another condition: `[length l > 0, m = hd l]` | may compute it first, and stops, whatever the other condition is | asks in the order that docs/semantics.md says, with a warning (`guard-order`); `verify` asks in every order |
 | a guard that is a list of conditions made by an operator other than `::`: `[a] ^^ [b]`, `[a] ++ [b]` | `InternalError: fun parse_guarditems`, the page cannot be checked | tests it, with a warning (`guard-list-operator`) |
 | a guard that computes a list of conditions: `List.map f l`, `if c then [a] else []` | accepts it, and does not test it | tests it, with a warning (`guard-computed-list`) |
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it generated | `unbound-variable` |
