@@ -54,7 +54,7 @@ def check_geometry(
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
         with in_time(max_seconds, path, late, form), playing(form), line as progress:
-            found = examine(opened, layout, limits, folder, d, progress.stage)
+            found = examine(opened, layout, limits, folder, d, progress.stage, progress.say)
         if found is None or d.has_errors:
             stop(d, form)
         if pictures:

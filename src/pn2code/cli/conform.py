@@ -105,6 +105,7 @@ def conform(
             inputs=inputs,
             kept=KeptAnswers.of_user(),
             stage=progress.stage,
+            say=progress.say,
         )
     if found is None:
         stop(d, form)

@@ -109,7 +109,7 @@ def time(
             out.mkdir(parents=True, exist_ok=True)
         with in_time(max_seconds, cell, late, form), playing(form), line as progress:
             limits = Limits(max_states=max_states, threads=cores())
-            found = look(opened, layout, limits, out, d, progress.stage)
+            found = look(opened, layout, limits, out, d, progress.stage, say=progress.say)
         if found is None or d.has_errors:
             stop(d, form)
         if out is not None:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import Say, silent
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner
@@ -83,6 +84,7 @@ def conform_cell(
     inputs: Path | None = None,
     kept: KeptAnswers | None = None,
     stage: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
 ) -> Conformance | None:
     """Compares all programs of a cell, or the compiled net alone; None after an error that was reported.
 
@@ -96,7 +98,7 @@ def conform_cell(
         checked: whether the supervisor must pass its checks (docs/execution.md).
         inputs: other input files than those beside cell.toml, as for `input_files.begin`.
         kept: what earlier commands have proved of the supervisor.
-        stage: hears what is done next.
+        stage: hears what is done next; say: and how far it is.
     """
 
     def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
@@ -126,12 +128,12 @@ def conform_cell(
     begun = begin(made.partition.net, made.config, Diagnostics(), given=inputs).net
     try:
         stage("comparing net.c with the token game ...")
-        compared = core.compare(begun, storage, d, most=most)
+        compared = core.compare(begun, storage, d, most=most, say=say)
         if compared is None:
             return None
         if made.config is None or not made.partition.channels:
             return Conformance(compared, None, (), found)
-        done = _programs(ProgramComparison(made, most, inputs), files, d, stage)
+        done = _programs(ProgramComparison(made, most, inputs, say), files, d, stage)
         return None if done is None else Conformance(compared, *done, found)
     except GameError as error:
         error.report(d)
@@ -174,16 +176,21 @@ class ProgramComparison:
         made: what is generated from the cell.
         most: states up to which all are compared.
         inputs: other input files, with which it was generated; None: those beside cell.toml.
+        say: hears in words how far a comparison is.
     """
 
     def __init__(
-        self, made: Generated, most: int = MOST_STATES, inputs: Path | None = None
+        self,
+        made: Generated,
+        most: int = MOST_STATES,
+        inputs: Path | None = None,
+        say: Say = silent,
     ) -> None:
         assert made.config is not None, "only a cell has programs"
         self.made = made
         self._config = made.config
         self._most = most
-        self._inputs = inputs
+        self._inputs, self._say = inputs, say
         self._begun = begin(made.partition.net, made.config, Diagnostics(), given=inputs)
         self._partition = replace(made.partition, net=self._begun.net)
 
@@ -215,7 +222,7 @@ class ProgramComparison:
                 if misread is not None:  # whatever else differs may come from this
                     difference = misread
                 elif difference is None or not tables_first:
-                    report = supervisor.explore(self._partition, game, probe, self._most)
+                    report = supervisor.explore(self._partition, game, probe, self._most, self._say)
                 if report.deviation is None and difference is not None:
                     report.deviation = supervisor.Deviation(difference, ())
                     report.complete, report.why = False, "deviation"
@@ -233,7 +240,9 @@ class ProgramComparison:
             return robot.RobotReport(
                 owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference
             )
-        return robot.explore(partition, self._config, owner.index, checked, game, most=self._most)
+        return robot.explore(
+            partition, self._config, owner.index, checked, game, most=self._most, say=self._say
+        )
 
     def _misread(self, trace: Path, game: Game) -> str | None:
         """Where the header of the program's trace says that it has read something else from its input files."""

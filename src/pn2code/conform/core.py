@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics
@@ -69,6 +70,7 @@ def compare(
     *,
     most: int = MOST_STATES,
     walks: int = WALKS,
+    say: Say = silent,
 ) -> CoreReport | None:
     """Compares the whole graph, or samples of it; None after an error that was reported.
 
@@ -78,6 +80,7 @@ def compare(
         d: gets the errors.
         most: nodes up to which the whole graph is compared.
         walks: random runs beyond that.
+        say: hears in words how far it is.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
@@ -93,7 +96,7 @@ def compare(
             return None
         if not found.complete or not graph.exists():
             return _sampled(net, storage, walks, Path(name), d)
-        whole = _Whole(net, storage, clock).compared(graph)
+        whole = _Whole(net, storage, clock).compared(graph, say)
         if whole.deviation or whole.given_up or not clock.is_relative:
             return whole
         # In relative time a graph does not say how long was waited: runs do.
@@ -110,7 +113,7 @@ class _Whole:
         self._clock = clock
         self._references: dict[int, Held] = {}
 
-    def compared(self, graph: Path) -> CoreReport:
+    def compared(self, graph: Path, say: Say) -> CoreReport:
         """The explorer's graph, node by node."""
         markings: list[tuple[float, Mapping[str, Any]]] = []
         leaving: list[dict[str, int]] = []
@@ -131,7 +134,9 @@ class _Whole:
             if not markings or _marking_key(*markings[0]) != self._key(self._game.marking):
                 raise _Differs("the initial markings differ")
             self._references = {0: self._game.marking.references}
+            more = HowFar(say, "comparing net.c", total=len(markings))
             for node, ((time, places), arcs) in enumerate(zip(markings, leaving, strict=True)):
+                more()
                 self._node(node, time, places, arcs)
         except GivenUpError as limit:
             return CoreReport(0, 0, False, given_up=str(limit))

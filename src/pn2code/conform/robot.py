@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import astuple, replace
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
@@ -172,7 +173,8 @@ class _Product:
         self._marks = 0
         self._commands = 0
 
-    def run(self) -> RobotReport:
+    def run(self, say: Say) -> RobotReport:
+        more = HowFar(say, f"comparing {self._name}.tdl", noun="states")
         first = self._timeless(_State(self._game.marking, self._interpreter.save(), None))
         parent: dict[_State, tuple[_State, str] | None] = {first: None}
         waiting = deque([first])
@@ -182,6 +184,7 @@ class _Product:
         try:
             while waiting and len(parent) <= self._most:
                 at = waiting.popleft()
+                more()
                 for text, following in self._following(at):
                     after = self._timeless(following)
                     if after not in parent:
@@ -579,6 +582,7 @@ def explore(
     game: Game,
     *,
     most: int = MOST_STATES,
+    say: Say = silent,
 ) -> RobotReport:
     """Compares a script with its page in every state that can be reached.
 
@@ -589,5 +593,6 @@ def explore(
         program: the script, checked.
         game: a token game at the marking from which the cell starts.
         most: states.
+        say: hears in words how far it is.
     """
-    return _Product(partition, config, owner, program, game, most).run()
+    return _Product(partition, config, owner, program, game, most).run(say)

@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 
 from pn2code.base.frozen import frozen, record
+from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.clock import Clock
@@ -108,7 +109,8 @@ _CYCLE = _Move(ObservedChange("the supervisor's cycle"), None)
 
 
 class _Product:
-    def __init__(self, partition: Partition, game: Game, probe: Probe, most: int) -> None:
+    def __init__(self, partition: Partition, game: Game, probe: Probe, most: int, say: Say) -> None:
+        self._more = HowFar(say, "comparing the supervisor", noun="states")
         self._partition = partition
         self._net = partition.net
         self._game = game
@@ -196,6 +198,7 @@ class _Product:
                 after = self._made(state, move)
                 if after is not None and after.sight not in self._seen:
                     self._seen.add(after.sight)
+                    self._more()
                     if len(stack) < MOST_DEPTH:
                         stack.append((after, self._moves(after)))
                         continue
@@ -357,7 +360,9 @@ class _Product:
         return tuple(sent)
 
 
-def explore(partition: Partition, game: Game, probe: Probe, most: int = MOST_STATES) -> Report:
+def explore(
+    partition: Partition, game: Game, probe: Probe, most: int = MOST_STATES, say: Say = silent
+) -> Report:
     """Compares the program with the net in every state that can be reached.
 
     Args:
@@ -365,11 +370,12 @@ def explore(partition: Partition, game: Game, probe: Probe, most: int = MOST_STA
         game: a token game at the marking from which the program started.
         probe: the program, after its first cycle.
         most: states at most.
+        say: hears in words how far it is.
 
     Raises:
         ProbeError: the program does not answer.
     """
     try:
-        return _Product(partition, game, probe, most).run()
+        return _Product(partition, game, probe, most, say).run()
     except GivenUpError as limit:  # before the program was asked anything
         return Report(complete=False, why=str(limit))

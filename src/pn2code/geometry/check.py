@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import Say, silent
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
@@ -30,10 +31,6 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits, Order
-
-
-def _silent(_: str) -> None:
-    """For those who do not care."""
 
 
 @frozen(eq=False)
@@ -68,7 +65,8 @@ def examine(
     limits: Limits,
     folder: Path,
     d: Diagnostics,
-    stage: Callable[[str], None] = _silent,
+    stage: Callable[[str], None] = silent,
+    say: Say = silent,
 ) -> Geometry | None:
     """Looks at everything; None after an error that was reported.
 
@@ -78,7 +76,7 @@ def examine(
         limits: of the exploration.
         folder: of the traces.
         d: gets the errors.
-        stage: hears in words what is done.
+        stage: hears in words what is done; say: and how far it is.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
@@ -125,7 +123,7 @@ def examine(
 
     stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
     folder.mkdir(parents=True, exist_ok=True)
-    options = Options(folder, stem, opened.initial, explore, stage, limits.threads)
+    options = Options(folder, stem, opened.initial, explore, stage, limits.threads, say)
     found = []
     for name, cell in cells:
         looking = Look(graph, cell, options, name)

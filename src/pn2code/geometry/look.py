@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.answers import Layout, Move, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
@@ -47,7 +48,7 @@ class Options:
         folder: of the traces; stem: what their names begin with.
         initial: markings that files gave, for the headers of traces.
         explore: explores a changed cell; None: no proposals.
-        stage: hears in words what is done.
+        stage: hears in words what is done; say: and how far it is.
         jobs: processes that sweep.
     """
 
@@ -57,6 +58,7 @@ class Options:
     explore: Explore | None = None
     stage: Callable[[str], None] = lambda _text: None
     jobs: int = 1
+    say: Say = silent
 
 
 @frozen(eq=False)
@@ -123,7 +125,7 @@ class Look:
         """All of them."""
         self.options.stage("looking where arms can be ...")
         found = Situations(graph, self.doing, self.robots)
-        found.explore()
+        found.explore(HowFar(self.options.say, "looking where arms can be", noun="situations"))
         return found
 
     def seen(self, found: Situations) -> Seen:
@@ -185,7 +187,9 @@ class Look:
         looked: set[tuple[int, str]],
         handled: dict[tuple[str, str, str], Move],
     ) -> None:
+        more = HowFar(self.options.say, "sweeping moves", total=len(found.activities))
         for (number, _element), met in found.activities.items():
+            more()
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
                 load = contents.load(leg.robot)
@@ -305,8 +309,10 @@ class Look:
         def is_open(i: int) -> bool:
             return all_sides[i] not in met_ or met_[all_sides[i]].apart.outcome != "touch"
 
+        more = HowFar(self.options.say, "sweeping pairs", total=len(pairs))
         with self.comparison.pairs_ahead(pairs, self.options.jobs, is_open):
             for i, met in enumerate(found.pairs.values()):
+                more()
                 if is_open(i):
                     self._pair(pairs[i], all_sides[i], met, met_, found)
         return dict(zip(met_, self._reported(found, met_.values()), strict=True))
@@ -358,7 +364,9 @@ class Look:
         """Arms, with what they carry, and parts that stand."""
         parts = found.parts() if found.beside else {}
         bad: dict[tuple[str, str, str], _Meeting] = {}
+        more = HowFar(self.options.say, "sweeping parts that stand", total=len(found.beside))
         for (number, i, where), met in found.beside.items():
+            more()
             leg, contents = self.doing.activities[number].legs[i]
             part = parts[where]
             t, _ = _who(found, met.elements[0])

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
@@ -100,8 +100,8 @@ class Situations:
         }
         self._seeing = Seeing(graph, doing)
 
-    def explore(self) -> None:
-        """Goes through all of them."""
+    def explore(self, more: Callable[[], None] = lambda: None) -> None:
+        """Goes through all of them; `more` hears of each."""
         stands = tuple(self.doing.planner.home(r) for r in self.robots)
         self._number(self._begun(Situation(0, stands, self.doing.start)), -1, -1)
         todo = deque([0])
@@ -109,6 +109,7 @@ class Situations:
         most = MORE * len(self.graph.arcs) if is_large else MOST
         while todo:
             number = todo.popleft()
+            more()
             here = self.situations[number]
             under_way = self._under_way(here)
             if here.state not in self.graph.cut:  # else more may be under way

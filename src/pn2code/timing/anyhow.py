@@ -14,6 +14,7 @@ way on which that is most.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, Doings
@@ -50,11 +51,12 @@ class Anyhow:
         self._enabled: dict[int, frozenset[int]] = {}
         self._shorter: dict[int, int] = {}
 
-    def explore(self) -> None:
-        """Goes through all of them."""
+    def explore(self, more: Callable[[], None] = lambda: None) -> None:
+        """Goes through all of them; `more` hears of each."""
         todo = deque([self._number((0, self.doings.homes))])
         while todo:
             node = todo.popleft()
+            more()
             before = len(self.nodes)
             self.successors[node] = list(self._after(node))
             if len(self.nodes) > MOST:

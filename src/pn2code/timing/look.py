@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Diagnostics, Origin
@@ -85,6 +86,7 @@ def look(
     stage: Callable[[str], None] = lambda _text: None,
     measured: Callable[[Measured], None] = lambda _layout: None,
     program: CellProgram | None = None,
+    say: Say = silent,
 ) -> Times | None:
     """Measures everything; None after an error that was reported.
 
@@ -94,7 +96,7 @@ def look(
         limits: of the exploration.
         folder: where a fastest and a slowest run are written; None: nowhere.
         d: gets the errors.
-        stage: hears in words what is done.
+        stage: hears in words what is done; say: and how far it is.
         measured: hears of each layout what was gone through.
         program: what was compiled of this cell, in which nothing is wrong; None: nothing.
     """
@@ -126,7 +128,7 @@ def look(
     for name, cell in cells:
         stage("measuring commands and cycles ...")
         one = _Look(graph, cell, config, name, folder, opened)
-        made.append(one.layout())
+        made.append(one.layout(say))
         measured(Measured(one.search, one.anyhow))
     return Times(tuple(made), timeout)
 
@@ -151,10 +153,10 @@ class _Look:
         owners = graph.partition.owners
         self.owner = {o.index: o.name for o in owners}
 
-    def layout(self) -> Layout:
+    def layout(self, say: Say) -> Layout:
         """All that is known."""
-        self.anyhow.explore()
-        self.search.explore()
+        self.anyhow.explore(HowFar(say, "measuring commands", noun="situations"))
+        self.search.explore(HowFar(say, "measuring cycles", noun="situations"))
         return Layout(
             self.name,
             tuple(self._commands()),

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import record
@@ -92,8 +92,8 @@ class Search:
         places = {p.name: p.index for p in self.graph.running.net.places}
         self._calm = places.get("cell.supervisor.calm", -1)
 
-    def explore(self) -> None:
-        """Goes through all of them, and finds the best and the worst."""
+    def explore(self, more: Callable[[], None] = lambda: None) -> None:
+        """Goes through all of them, and finds the best and the worst; `more` hears of each."""
         clock = ((CLOCK, TICKS, NS),) if self.graph.partition.net.timed else ()
         self._number((0, self.doings.homes, clock))
         self._from.append((-1, BEGINS))
@@ -104,6 +104,7 @@ class Search:
             now, node = heapq.heappop(todo)
             if node in done:
                 continue
+            more()
             done.add(node)
             self.seen_until = now
             arcs = self._after(node)

@@ -1,0 +1,65 @@
+"""How far a loop is: said now and then, with a rate, and with what is left where the number of all is known.
+
+more = HowFar(line.say, "sweeping pairs", total=len(pairs))
+for pair in pairs:
+    more()      # "sweeping pairs: 1,200 of 9,870, 310 a second, about 28 s left"
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+PERIOD_S = 0.5
+"""It is said no more often than that."""
+
+Say = Callable[[str], None]
+
+
+def silent(_text: str) -> None:
+    """Nobody listens."""
+
+
+class HowFar:
+    """Counts.
+
+    Args:
+        say: hears in words how far it is.
+        what: is done; noun: what is counted, where not all are known.
+        total: all of them; 0: nobody knows.
+        clock: seconds since any moment.
+    """
+
+    def __init__(
+        self,
+        say: Say,
+        what: str,
+        *,
+        noun: str = "",
+        total: int = 0,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._say, self._what, self._noun, self._total = say, what, noun, total
+        self._clock = clock
+        self._began = self._said = clock()
+        self._count = 0
+
+    def __call__(self) -> None:
+        """One more is done."""
+        self._count += 1
+        now = self._clock()
+        if now - self._said >= PERIOD_S:
+            self._said = now
+            self._say(self._text(now - self._began))
+
+    def _text(self, passed: float) -> str:
+        rate = self._count / passed
+        counted = f" of {self._total:,}" if self._total else f" {self._noun}".rstrip()
+        text = f"{self._what}: {self._count:,}{counted}, {_rate(rate)}"
+        if not self._total:
+            return text
+        return f"{text}, about {max(self._total - self._count, 0) / rate:,.0f} s left"
+
+
+def _rate(a_second: float) -> str:
+    return f"{a_second:,.0f} a second" if a_second >= 10 else f"{a_second:.1f} a second"
