@@ -46,15 +46,15 @@ class HowFar:
 
     def __call__(self) -> None:
         """One more is done."""
-        self._count += 1
+        self._count += 1  # one is too few for a rate
         now = self._clock()
-        if now - self._said >= PERIOD_S:
+        if now - self._said >= PERIOD_S and self._count > 1:
             self._said = now
             self._say(self._text(now - self._began))
 
     def _text(self, passed: float) -> str:
         rate = self._count / passed
-        counted = f" of {self._total:,}" if self._total else f" {self._noun}".rstrip()
+        counted = f" of {self._total:,}" if self._total else f" {self._noun}"
         text = f"{self._what}: {self._count:,}{counted}, {_rate(rate)}"
         if not self._total:
             return text

@@ -33,4 +33,4 @@ def test_where_nobody_knows_them_it_says_the_rate() -> None:
 
 
 def test_more_than_were_announced_leave_nothing() -> None:
-    assert counted([0.0, 1.0, 2.0], 1)[-1] == "sweeping: 2 of 1, 1.0 a second, about 0 s left"
+    assert counted([0.0, 1.0, 2.0], 1) == ["sweeping: 2 of 1, 1.0 a second, about 0 s left"]
