@@ -227,7 +227,7 @@ def test_speeds_of_the_way_are_those_of_the_poses_on_it(command: Any) -> None:
     shifts = (after - before)[:, :3, 3] / (2.0 * h)
     assert np.abs(shifts - way.shifts(s)).max() < 1e-6
     here = way.at(s)
-    spins = way.spins(here[:, :3, :3])
+    spins = way.spins(here[:, :3, :3], s)
     rates = (after - before)[:, :3, :3] / (2.0 * h) @ np.transpose(here[:, :3, :3], (0, 2, 1))
     found = np.stack([rates[:, 2, 1], rates[:, 0, 2], rates[:, 1, 0]], axis=1)
     assert np.abs(found - spins).max() < 1e-6
