@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import pose_mm, riveting_cell
+from pn2code.geometry.words import words
+from pn2code.geometry.zone_speeds import _Pace
 from pn2code.robot.blend import MOST_OFF, Blended, PassingLaw
 from pn2code.robot.commands import MoveLinear, Pose
 from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.transforms import Array, matrix_of
+from pn2code.run import command_words
 
 CELL = riveting_cell("good")
 START = np.radians([10.0, -100.0, 90.0, 20.0, 40.0, 60.0])
@@ -173,3 +176,28 @@ def test_what_is_refused(via: tuple[Pose, ...], zone: float, message: str) -> No
 def test_a_speed_must_be_above_zero() -> None:
     with pytest.raises(MotionFault, match="linear speed must be above 0, but it is 0"):
         move(0.02, VIA, 0.0)
+
+
+@pytest.mark.parametrize("zone", [0.005, 0.05])
+def test_the_speed_between_instants_is_bounded(zone: float) -> None:
+    """What is checked in zones where people may be: its speed has several peaks, at no particular times."""
+    path = path_of(move(zone))
+    pace = _Pace(path)
+    times = np.linspace(0.0, path.duration, 40001)
+    rows = np.array([path.progress(float(t)) for t in times])
+    assert (np.diff(rows[:, 0]) >= -1e-12).all()
+    is_above = False
+    for a in np.linspace(0.0, 0.999, 1000):
+        inside = (rows[:, 0] >= a) & (rows[:, 0] <= a + 0.001)
+        most = rows[inside, 1].max()
+        assert most <= pace.most(a, a + 0.001)
+        is_above |= bool(most > pace.most(a, a + 0.001) - pace._more)
+    assert is_above
+
+
+def test_words_say_by_which_poses() -> None:
+    """Those of runs, and of the check."""
+    told = MoveLinear(END, "tool", via=VIA, blend=0.02)
+    says = command_words.words(told)
+    assert says.count(" via ") == 2 and says.endswith("blend 20.0000 mm")
+    assert words(told).count(" via ") == 2 and "blend 20 mm" in words(told)
