@@ -55,6 +55,27 @@ def test_the_script_moves_as_the_net_and_the_cell_say(tmp_path: Path) -> None:
         assert _deviation(found, owner, changed(text, old, new)), new
 
 
+def test_several_poses_and_a_speed(tmp_path: Path) -> None:
+    entry = ENTRY.replace("blend = 0.1", "blend = 0.02, via = 2, acceleration = 0.5")
+    takes = "r : POSE, q : POSE, p : POSE, v : real"
+    where = cell(
+        tmp_path, entry, f"{LOW}\n{BESIDE}", "(beside p, beside (beside p), p, 40.0)", takes
+    )
+    found = made(where)
+    text = next(f.text for f in found.files if f.path == "robot1.tdl")
+    (line,) = moves(text)
+    assert line.startswith(
+        "move $linear p via pose(p.x - 300 mm, p.y, p.z, p.rx, p.ry, p.rz), pose("
+    )
+    assert line.endswith("in world with $blend = 20 mm at 40 mm/s acceleration 50 %")
+    assert _deviation(found, found.partition.owners[1], text) is None
+    order = "p via pose(p.x - 300 mm, p.y, p.z, p.rx, p.ry, p.rz), "
+    first = order.removeprefix("p via ").removesuffix(", ")
+    second = line[line.index(order) + len(order) : line.index(" in world")]
+    swapped = changed(text, f"via {first}, {second}", f"via {second}, {first}")
+    assert _deviation(found, found.partition.owners[1], swapped)
+
+
 def _leg(folder: Path) -> tuple[Planner, Leg]:
     d = Diagnostics()
     config = load(folder / "cell.toml", d)

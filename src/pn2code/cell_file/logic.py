@@ -289,7 +289,7 @@ PRIMITIVE = Section(
             "How many poses on the way the function takes, with `blend`.",
             "a whole number",
             low=1,
-            high=16,
+            high=7,
             default=1,
             only=("move_linear",),
         ),
