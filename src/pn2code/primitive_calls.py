@@ -127,8 +127,9 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
             return (commands.MoveExternal(along, fraction, ramp),)
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            pose = _pose(values[0])
-            line = commands.MoveLinear(pose, frame, metres, ramp, along, tcp, elbow)
+            *through, pose = map(_pose, values[: primitive.places])
+            way, zone = tuple(through), primitive.blend / 1000.0
+            line = commands.MoveLinear(pose, frame, metres, ramp, along, tcp, elbow, way, zone)
             if not primitive.approach:
                 return (*_departure(primitive, metres, ramp), line)
             before = _si(*pose_before(_numbers(values[0]), primitive.approach))

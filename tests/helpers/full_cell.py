@@ -59,6 +59,7 @@ kind = "data"
 [primitives]
 joint = { command = "move_joint", frame = "bench", speed = 0.5, acceleration = 0.4, depart = 0.1 }
 axes = { command = "move_axes", speed = 0.5, acceleration = 0.4 }
+past = { command = "move_linear", frame = "bench", blend = 0.02, via = 2 }
 line = { command = "move_linear", frame = "bench", speed = 0.2, acceleration = 0.3, approach = 0.2 }
 arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0.3 }
 grasp = { command = "move_joint", tcp = "gripper", arm_angle = 20.0 }

@@ -45,6 +45,8 @@ class Primitive:
             positions, in mm and degrees, behind the poses.
         tcp: of moves to poses: the tool frame that comes there; "": that of the tool.
         arm_angle: of moves to poses: degrees, where the elbow of an arm with seven axes is then; None: nothing is said.
+        via: of move_linear: how many poses on the way the function takes before the one where it ends.
+        blend: of move_linear with `via`: mm; the corners at these poses are rounded within so much.
         to: of move_external: where its axis goes, mm or degrees; None: the function says it.
     """
 
@@ -62,11 +64,13 @@ class Primitive:
     tcp: str = ""
     arm_angle: float | None = None
     to: float | None = None
+    via: int = 0
+    blend: float = 0.0
 
     @property
     def places(self) -> int:
         """How many poses or joint positions the function takes."""
-        return {"move_circular": 2, "move_external": 0}.get(self.command, 1)
+        return {"move_circular": 2, "move_external": 0}.get(self.command, 1 + self.via)
 
     @property
     def takes(self) -> int:

@@ -421,6 +421,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             if "arm_angle" in own and "arm_angle" in table
             else None,
             fixed_of(r, data, table, at, along) if "to" in own else None,
+            *_corners(r, table, at, command),
         )
         _check_approach(r, out[name], at)
     return out
@@ -476,6 +477,30 @@ def _scaled(
     if name not in table or name not in PRIMITIVE.names(command):
         return None
     return r.number(table, at, PRIMITIVE.key(name, command), 0.1) * factor
+
+
+def _corners(r: Tables, table: dict[str, Any], at: KeyPath, command: str) -> tuple[int, float]:
+    """How many poses on the way a linear move has, and the zone of their corners, mm."""
+    if "via" not in PRIMITIVE.names(command) or not {"via", "blend"} & table.keys():
+        return 0, 0.0
+    blend = _scaled(r, table, at, command, "blend", 1000.0)
+    if blend is None:
+        r.d.error(
+            codes.CELL_VALUE,
+            "a linear move by way of poses needs a zone in which its corners are rounded",
+            r.at(*at, "via"),
+            hint="add `blend = 0.02` (m)",
+        )
+        return 0, 0.0
+    for name in ("approach", "track", "turntable"):
+        if name in table:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` does not go with a linear move by way of poses (`blend`)",
+                r.at(*at, name),
+                hint="make a move of its own of it, before or after",
+            )
+    return int(r.number(table, at, PRIMITIVE["via"], 1)), blend
 
 
 def _check_approach(r: Tables, primitive: Primitive, at: KeyPath) -> None:

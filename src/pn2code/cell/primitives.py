@@ -497,10 +497,11 @@ def _taking(primitive: Primitive) -> str:
     count = len(primitive.along)
     if primitive.to is not None:
         return "unit -> unit"
-    if not count:
+    if not count and not primitive.via:
         return text
-    places = {"move_axes": ["AXES"], "move_external": [], "move_circular": ["POSE", "POSE"]}
-    own = [*places.get(primitive.command, ["POSE"]), *["real"] * count]
+    places = {"move_axes": ["AXES"], "move_external": []}
+    poses = ["POSE"] * primitive.places
+    own = [*places.get(primitive.command, poses), *["real"] * count]
     return f"{' * '.join(own)} -> unit` or `{' * '.join([*own, 'real'])} -> unit"
 
 
@@ -527,6 +528,8 @@ def _goes(parts: list[Type], primitive: Primitive) -> bool:
         case "move_axes":
             fit = all(map(is_axes, places))
         case "move_circular":
+            fit = all(map(is_pose, places))
+        case "move_linear" if primitive.via:
             fit = all(map(is_pose, places))
         case _:
             fit = all(map(_is_pose, places))

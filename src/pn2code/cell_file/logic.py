@@ -271,6 +271,28 @@ PRIMITIVE = Section(
             above=True,
             only=("move_joint", "move_axes", "move_linear", "move_home"),
         ),
+        Key(
+            "blend",
+            "number",
+            "The function takes poses on the way before the one where the move ends. The TCP goes on lines from one to "
+            "the next and does not stop: the corner at each is rounded, from at most so far before it to at most so "
+            "far behind it. Not with `approach`, `track` and `turntable`.",
+            "a number",
+            unit="m",
+            low=1e-4,
+            high=10.0,
+            only=("move_linear",),
+        ),
+        Key(
+            "via",
+            "whole",
+            "How many poses on the way the function takes, with `blend`.",
+            "a whole number",
+            low=1,
+            high=7,
+            default=1,
+            only=("move_linear",),
+        ),
         Key("action", "text", "The name of the action.", "a name", required=True, only=("tool",)),
         Key(
             "duration_s",

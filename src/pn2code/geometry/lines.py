@@ -105,7 +105,7 @@ class Follower:
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
         rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
-        spin = line.spins(rotation).reshape(*q.shape[:2], 3)
+        spin = line.spins(rotation, s.ravel()).reshape(*q.shape[:2], 3)
         shift = line.shifts(s.ravel()).reshape(spin.shape)
         twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)
         turns = np.zeros(q.shape)
@@ -114,7 +114,7 @@ class Follower:
             own = np.linalg.solve(jacobian[is_fine], twist[is_fine][..., None])[..., 0]
             least = sigma[is_fine]
             other = steep[is_fine] * y[is_fine] / (least * reach[is_fine])
-            # The twist turns with the tool, by no more than the angle of half a step; that of an arc bends, too.
+            # The twist turns with the tool, by no more than the angle of half a step; arcs and corners bend it, too.
             way = w[is_fine] / max(self._speed, 1e-12)
             more = (other + w[is_fine] / least) * self._speed + way * line.bend / least
             bound = (np.abs(own) + more[..., None]) * way[..., None]

@@ -63,9 +63,12 @@ def words(command: Command | None) -> str:
             return f"axes {' '.join(_short(math.degrees(v)) for v in axes)}{_with(command.along)}"
         case MoveExternal(along=along):
             return f"external{_with(along)}"
-        case MoveLinear(target=pose, frame=frame):
+        case MoveLinear(target=pose, frame=frame, via=through):
             how = f"{_by(command.tcp)}{_with(command.along)}{_elbow(command.arm_angle)}"
-            return f"linear {numbers(pose)}{_within(frame)}{how}"
+            if through:
+                how += f", blend {_short(1000.0 * command.blend)} mm"
+            places = "".join(f" via {numbers(p)}" for p in through)
+            return f"linear {numbers(pose)}{places}{_within(frame)}{how}"
         case MoveCircular(target=pose, via=via, frame=frame):
             places = " ".join(_short(1000.0 * v) for v in (via.x, via.y, via.z))
             how = f"{_by(command.tcp)}{_with(command.along)}{_elbow(command.arm_angle)}"

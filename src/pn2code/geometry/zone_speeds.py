@@ -22,7 +22,7 @@ from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
 
 _INSTANTS = 400
-"""At which the law of a move is looked at; half way is one of them: there it is fastest."""
+"""At which the law of a move is looked at; half way is one of them: there it is fastest, unless it is uneven."""
 _FIRST = 64
 """At which something too fast is looked for before anything is bounded."""
 _MOST_PIECES = 3000
@@ -38,12 +38,15 @@ class _Pace:
         rows = np.array([path.progress(float(t)) for t in self.times])
         self.way, self.speed = np.maximum.accumulate(rows[:, 0]), rows[:, 1]
         self.way[-1] = max(self.way[-1], 1.0)
+        # Between two instants it is no faster than at the nearer one by what half of the time changes.
+        uneven = 0.0 if isinstance(path, JointTrajectory) else path.uneven
+        self._more = uneven * path.duration / (2.0 * _INSTANTS)
 
     def most(self, a: float, b: float) -> float:
         """The greatest speed (1/s) between two fractions of the way."""
         first = max(int(np.searchsorted(self.way, a, side="left")) - 1, 0)
         last = min(int(np.searchsorted(self.way, b, side="right")), _INSTANTS)
-        return float(self.speed[first : last + 1].max())
+        return float(self.speed[first : last + 1].max()) + self._more
 
     def time(self, s: float) -> float:
         """When it is at a fraction of the way."""

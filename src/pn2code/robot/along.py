@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.blend import Blended, law_through
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.motion import (
     Arc,
@@ -44,6 +45,7 @@ class Led:
         table: the turntable on whose plate it is led, by its index among the axes; None: in the world.
         target: where it goes, on the plate or in the base frame; via: of an arc.
         swivel: of the arm angle, where the arm has one.
+        through: poses on the way of lines whose corners are rounded within `zone` (m).
     """
 
     start: Array
@@ -53,6 +55,8 @@ class Led:
     target: Array
     via: Array | None = None
     swivel: Swivel | None = None
+    through: tuple[Array, ...] = ()
+    zone: float = 0.0
 
 
 class Coordinated:
@@ -104,9 +108,9 @@ class Coordinated:
         arms = places - self._place[:3, 3]
         return np.asarray(own + np.cross(self._spin, arms) - self._carry)
 
-    def spins(self, turns: Array) -> Array:
+    def spins(self, turns: Array, s: Array) -> Array:
         """How the tool turns for one unit of s."""
-        return np.asarray(self.inner.spins(turns) + self._spin)
+        return np.asarray(self.inner.spins(turns, s) + self._spin)
 
 
 class AlongTrajectory:
@@ -155,6 +159,11 @@ class AlongTrajectory:
         out[self.joints] = self.led.qd(t)
         return np.asarray(out)
 
+    @property
+    def uneven(self) -> float:
+        """As of its law."""
+        return self.led.uneven
+
     def progress(self, t: float) -> tuple[float, float]:
         """Fraction of the way at a time, and its speed, 1/s."""
         return self.led.progress(t)
@@ -182,21 +191,34 @@ def plan_led(
         first = inverse(plate) @ wanted.T_base_tcp
     else:
         first = wanted.T_base_tcp
-    inner: Line | Arc
-    if wanted.via is None:
+    delta = np.abs(wanted.end - wanted.start)
+    delta[k.joints] = 0.0
+    inner: Line | Arc | Blended
+    pace: Pace | None
+    if wanted.through:
+        if delta.max() > _SAME:
+            raise MotionFault(
+                "bad-command",
+                "external axes stand still on a linear move through several poses; move them before, or after",
+            )
+        inner = Blended([first, *wanted.through, wanted.target], wanted.zone)
+        pace, passing = None, law_through(inner, limits, speed, wanted.swivel)
+    elif wanted.via is None:
         inner = Line(first, wanted.target)
         pace = line_pace(inner, limits, speed, wanted.swivel)
     else:
         inner = Arc(first, wanted.via, wanted.target)
         pace = arc_pace(inner, limits, speed, wanted.swivel)
-    delta = np.abs(wanted.end - wanted.start)
-    delta[k.joints] = 0.0
-    pace = _with(pace, delta, limits)
-    if pace is None:
-        return Still(wanted.start, 0.0)
+    law: Law
+    if wanted.through:
+        law = passing
+    else:
+        pace = _with(pace, delta, limits)
+        if pace is None:
+            return Still(wanted.start, 0.0)
+        law = Law(*pace)
     shift, end = k.shifts(np.stack([wanted.start, wanted.end]))
     way = Coordinated(inner, place, begin, turn, shift, end - shift)
-    law = Law(*pace)
     own = replace(limits, axis_velocity=limits.axis_velocity[k.joints])
     try:
         path = led(k.alone, way, law, wanted.start[k.joints], own, wanted.swivel)

@@ -100,8 +100,10 @@ class MoveLinear:
     """LIN: absolute in a frame, or incremental in the tool frame as it stands at the beginning.
 
     Args:
-        frame: "world", "tool", or a name of `[frames]`.
+        frame: "world", "tool", or a name of `[frames]`; also of the poses on the way.
         speed: m/s; None: the configured linear speed.
+        via: poses on the way, in order: the TCP goes on lines from one to the next, and does not stop.
+        blend: m, how far before and behind them it leaves the lines at most; above 0 if there are any.
     """
 
     target: Pose
@@ -111,6 +113,8 @@ class MoveLinear:
     along: tuple[Along, ...] = ()
     tcp: str = ""
     arm_angle: float | None = None
+    via: tuple[Pose, ...] = ()
+    blend: float = 0.0
 
 
 @frozen

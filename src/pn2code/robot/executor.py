@@ -20,6 +20,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.along import AlongTrajectory, Led, plan_led
+from pn2code.robot.blend import plan_through
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import (
     Along,
@@ -60,7 +61,7 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
-MotionKind = Literal["ptp", "lin", "circ", "axis", "tool", "measure", "wait"]
+MotionKind = Literal["ptp", "lin", "circ", "blend", "axis", "tool", "measure", "wait"]
 _OWN = np.eye(4)
 _STILL = 1e-9  # rad: a turntable that turns by less stands
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
@@ -444,7 +445,9 @@ class RobotExecutor:
 
     def _linear(self, command: MoveLinear, now: float) -> Motion:
         if self.robot.axes or command.along:
-            return self._along(command, "lin", now)
+            return self._along(command, "blend" if command.via else "lin", now)
+        if command.via:
+            return self._through(command, now)
         target = self._in_base(command.target, command, self.q)
         path = plan_lin(
             self._tcp(command)[0],
@@ -458,17 +461,36 @@ class RobotExecutor:
         end = self._of_tool(target, command)
         return self._moving(command, "lin", now, path, path.q(path.duration), end)
 
+    def _through(self, command: MoveLinear, now: float) -> Motion:
+        """Lines through poses on the way, with rounded corners."""
+        goals = [self._in_base(pose, command, self.q) for pose in (*command.via, command.target)]
+        path = plan_through(
+            self._tcp(command)[0],
+            self.q,
+            [self._begins(command), *goals],
+            command.blend,
+            self._limited(command),
+            command.speed,
+            self._swivel(command),
+        )
+        end = self._of_tool(goals[-1], command)
+        return self._moving(command, "blend", now, path, path.q(path.duration), end)
+
     def _along(self, command: MoveLinear | MoveCircular, kind: MotionKind, now: float) -> Motion:
         """A line or an arc of a robot that has external axes."""
         end = self._towards(command.along)
         k, _ = self._tcp(command)
         assert isinstance(k, WithAxes), "it has external axes"
         plate, target = self._given(command.target, command)
-        via = None
+        via, zone = None, 0.0
+        through: tuple[Array, ...] = ()
         if isinstance(command, MoveCircular):
             _, via = self._given(command.via, command)
+        elif command.via:
+            through = tuple(self._given(pose, command)[1] for pose in command.via)
+            zone = command.blend
         begins = self._begins(command)
-        wanted = Led(self.q, end, begins, plate, target, via, self._swivel(command))
+        wanted = Led(self.q, end, begins, plate, target, via, self._swivel(command), through, zone)
         path = plan_led(k, wanted, self._limited(command), command.speed)
         last = path.q(path.duration)
         if plate is not None:
@@ -565,7 +587,7 @@ class RobotExecutor:
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
         if isinstance(path, AlongTrajectory) or (
-            isinstance(path, LinearTrajectory) and (kind == "circ" or tcp_of(command))
+            isinstance(path, LinearTrajectory) and (kind in ("circ", "blend") or tcp_of(command))
         ):
             way, turn = path.line.length, path.line.angle
             parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)

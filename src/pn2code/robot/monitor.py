@@ -151,7 +151,7 @@ class Monitor:
         poses = {s.robot: s.pose for s in samples}
         fault: Fault | None = None
         for s in samples:
-            fault = fault or self._own_fault(s, t, kinds.get(s.robot) in ("lin", "circ"))
+            fault = fault or self._own_fault(s, t, kinds.get(s.robot) in ("lin", "circ", "blend"))
             if s.robot in self._devices:
                 continue
             c = s.conditioning

@@ -152,7 +152,12 @@ class Still:
 
 
 class Law:
-    """A jerk-limited law of one parameter from 0 to 1, from rest to rest; `duration` s."""
+    """A jerk-limited law of one parameter from 0 to 1, from rest to rest; `duration` s.
+
+    `uneven`: a bound on how fast its speed changes (1/s2) where it may be greatest at any time; 0: it is so half way.
+    """
+
+    uneven = 0.0
 
     def __init__(self, velocity: float, acceleration: float, jerk: float) -> None:
         # Whoever only looks where arms stand needs no time laws.
@@ -243,11 +248,12 @@ def turning(start: Array, target: Array) -> tuple[Array, float]:
 
 
 class Way(Protocol):
-    """A way of the TCP, by the fraction s of it, at a constant speed of its place and of its turning.
+    """A way of the TCP, by the fraction s of it.
 
     Attributes:
         start: where it begins; length: m; angle: rad, how far the tool turns; axis: about which, in its own frame.
-        bend: a bound on how fast the velocity of the TCP for one unit of s turns in space, m.
+            For one unit of s neither place nor orientation goes faster anywhere.
+        bend: a bound on how fast the twist of the TCP for one unit of s changes, but for what turns with the tool, m.
         name: for messages.
     """
 
@@ -264,7 +270,7 @@ class Way(Protocol):
     def shifts(self, s: Array) -> Array:
         """Velocity of the TCP's place (m) for one unit of s, (n, 3)."""
 
-    def spins(self, turns: Array) -> Array:
+    def spins(self, turns: Array, s: Array) -> Array:
         """How the tool turns (rad) for one unit of s, where its rotations are (n, 3, 3): (n, 3)."""
 
 
@@ -299,7 +305,7 @@ class Line:
         """The same everywhere."""
         return np.broadcast_to(self.shift, (len(s), 3))
 
-    def spins(self, turns: Array) -> Array:
+    def spins(self, turns: Array, s: Array) -> Array:
         """About its axis."""
         return own_spins(self.axis, self.angle, turns)
 
@@ -366,7 +372,7 @@ class Arc:
         t = (s * self.sweep)[:, None]
         return np.asarray(self.length * (np.cos(t) * self._v - np.sin(t) * self._u))
 
-    def spins(self, turns: Array) -> Array:
+    def spins(self, turns: Array, s: Array) -> Array:
         """About its axis."""
         return own_spins(self.axis, self.angle, turns)
 
@@ -466,6 +472,11 @@ class LinearTrajectory:
         """Fraction of the way at a time, and its speed, 1/s."""
         return self._law.at(t)
 
+    @property
+    def uneven(self) -> float:
+        """As of its law."""
+        return self._law.uneven
+
     def rate(self, t: float) -> float:
         """Speed along the way, 1/s."""
         return self._law.at(t)[1]
@@ -473,7 +484,7 @@ class LinearTrajectory:
     def rates(self, q: Array, rate: Array, s: Array) -> Array:
         """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s), at fractions s of it."""
         now = self._k.forward_many(q)
-        spins = self.line.spins(now[:, :3, :3])
+        spins = self.line.spins(now[:, :3, :3], s)
         twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
         wanted = self._k.led_twist(twist, self.swivel * rate)
         jacobian = self._k.led_jacobian(q)

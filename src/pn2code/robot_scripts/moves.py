@@ -58,31 +58,34 @@ def of(
     if primitive.depart:
         speed = at if primitive.is_linear else None
         back = _pose(0.0, 0.0, -primitive.depart)
-        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, None, ramp, tcp=tcp))
+        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, (), ramp, tcp=tcp))
     match primitive.command:
+        case "move_linear" if primitive.via:
+            assert isinstance(argument, Rec), "the cell has been checked"
+            *through, goal = (pose(value, name, span) for _, value in argument.fields)
+            zone, by = t.Quantity(primitive.blend, "mm"), tuple(through)
+            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, by, ramp, along, tcp, elbow, zone))
         case "move_linear":
             goal = pose(argument, name, span)
             if primitive.approach:
                 distance = t.Quantity(primitive.approach, "mm")
                 before = t.CallExpression("before", (goal, distance))
-                out.append(
-                    t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along, tcp, elbow)
-                )
-            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along, tcp, elbow))
+                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, (), ramp, along, tcp, elbow))
+            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, (), ramp, along, tcp, elbow))
         case "move_circular":
             assert isinstance(argument, Rec), "the cell has been checked"
             via, goal = (pose(argument.get(label), name, span) for label in ("1", "2"))
-            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along, tcp, elbow))
+            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, (via,), ramp, along, tcp, elbow))
         case "move_axes":
             axes = _axes(argument, name, span)
-            out.append(t.Move(t.Motion.JOINT, axes, None, at, None, ramp, along))
+            out.append(t.Move(t.Motion.JOINT, axes, None, at, (), ramp, along))
         case "move_external":
-            out.append(t.Move(t.Motion.EXTERNAL, None, None, at, None, ramp, along))
+            out.append(t.Move(t.Motion.EXTERNAL, None, None, at, (), ramp, along))
         case "move_joint":
             goal = pose(argument, name, span)
-            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along, tcp, elbow))
+            out.append(t.Move(t.Motion.JOINT, goal, frame, at, (), ramp, along, tcp, elbow))
         case _:
-            out.append(t.Move(t.Motion.JOINT, None, None, at, None, ramp))
+            out.append(t.Move(t.Motion.JOINT, None, None, at, (), ramp))
     return out
 
 

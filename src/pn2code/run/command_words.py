@@ -62,7 +62,8 @@ def words(command: Command, slides: tuple[bool, ...] = ()) -> str:
             by = f" by {tcp}" if tcp else ""
             elbow = None if isinstance(command, Measure) else command.arm_angle
             arm = "" if elbow is None else f", arm angle {np.degrees(elbow):.4f} deg"
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}{arm}"
+            way = _through(command) if isinstance(command, MoveLinear) else ""
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{way}{within}{by}{_with(moved)}{arm}"
         case MoveAxes(axes=axes):
             shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
             if any(slides):
@@ -77,6 +78,20 @@ def words(command: Command, slides: tuple[bool, ...] = ()) -> str:
             return f"tool action {action}"
         case Wait(duration=duration):
             return f"wait {duration} s"
+
+
+def _through(command: MoveLinear) -> str:
+    """The poses on the way, and the zone of their corners."""
+    if not command.via:
+        return ""
+    shown = (
+        " ".join(f"{v * 1000:.4f}" for v in (p.x, p.y, p.z))
+        + " mm, "
+        + " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
+        + " deg"
+        for p in command.via
+    )
+    return "".join(f" via {x}" for x in shown) + f", blend {command.blend * 1000:.4f} mm"
 
 
 def _with(along: tuple[Along, ...]) -> str:

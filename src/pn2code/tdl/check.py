@@ -481,16 +481,51 @@ class _Checker:
                 self.expect(angle, Type.ANGLE, f"the angle of axis {number}")
         elif s.target is not None:
             self.expect(s.target, Type.POSE, "the target")
-        if s.via is not None:
-            self.expect(s.via, Type.POSE, "the pose on the way")
-        if (s.via is not None) != (s.motion is t.Motion.CIRCULAR):
+        for pose in s.via:
+            self.expect(pose, Type.POSE, "the pose on the way")
+        self.corners(s)
+        if s.motion is t.Motion.LINEAR:
+            return
+        if (len(s.via) == 1) != (s.motion is t.Motion.CIRCULAR) or len(s.via) > 1:
+            is_arc = s.motion is t.Motion.CIRCULAR
             self.d.error(
                 codes.VIA,
-                "a circular move needs a pose on the way"
-                if s.via is None
-                else "only a circular move goes by way of a pose",
-                s.span if s.via is None else s.via.span,
-                hint="write `move $circular END via POSE`",
+                f"a circular move needs {'a' if not s.via else 'one'} pose on the way"
+                if is_arc
+                else "only circular and linear moves go by way of a pose",
+                s.span if not s.via else s.via[-1].span,
+                hint="write `move $circular END via POSE`, or `move $linear END via POSE with $blend = 20 mm`",
+            )
+
+    def corners(self, s: t.Move) -> None:
+        """A line goes by way of poses with rounded corners, and nothing else has a zone for them."""
+        is_line = s.motion is t.Motion.LINEAR
+        if s.blend is None:
+            if is_line and s.via:
+                self.d.error(
+                    codes.VIA,
+                    "a linear move by way of poses needs a zone in which its corners are rounded",
+                    s.via[0].span,
+                    hint="write `move $linear END via POSE with $blend = 20 mm`",
+                )
+            return
+        if not is_line or not s.via:
+            self.d.error(
+                codes.VIA,
+                "only a linear move by way of poses has a zone for its corners",
+                s.blend.span,
+                hint="write `move $linear END via POSE with $blend = 20 mm`",
+            )
+        if self.expect(s.blend, Type.LENGTH, "the zone of the corners"):
+            known = self.known(s.blend)
+            if known is not None and not known > 0:
+                self.d.error(codes.VIA, "the zone of the corners must be above zero", s.blend.span)
+        if s.along:
+            self.d.error(
+                codes.EXTERNAL,
+                "external axes stand still on a linear move by way of poses",
+                s.along[0].span,
+                hint="move them with `move $external with ...`, before or after",
             )
 
     def speed(self, motion: t.Motion, value: t.Expression) -> None:

@@ -120,8 +120,9 @@ UNKNOWN_MOTION = register(
 VIA = register(
     "tdl-via",
     "a pose on the way is missing, or is no use",
-    "`move $circular END via POSE` goes on the arc from where the TCP is through the position of POSE to END. Other "
-    "moves go by way of no pose.",
+    "`move $circular END via POSE` goes on the arc from where the TCP is through the position of POSE to END. "
+    "`move $linear END via P, Q with $blend = 20 mm` goes on lines from pose to pose, with corners that are rounded "
+    "within 20 mm of them. Joint moves go by way of no pose.",
 )
 SPEED = register(
     "tdl-speed",

@@ -37,10 +37,10 @@ block: statement*
 move: "move" MOTION target via? ("in" frame)? along? pace? ramp?
     | "move" MOTION along pace? ramp?
 along: "with" external ("," external)*
-external: MOTION NAME ("=" expression)?
+external: MOTION NAME ("=" expression)? | MOTION "=" expression -> zone
 ?target: HOME | axes | expression
 axes: "axes" "(" expression ("," expression)* ")"
-via: "via" expression
+via: "via" expression ("," expression)*
 pace: "at" expression
 ramp: "acceleration" expression
 frame: NAME | TOOL | STRING

@@ -384,11 +384,15 @@ class Interpreter:
         metres = None if speed is None else speed / 1000.0
         assert s.target is not None and not isinstance(s.target, t.Axes), "it was checked"
         if s.motion is t.Motion.LINEAR:
+            end = self._pose(s.target)
+            through = tuple(map(self._pose, s.via))
+            zone = 0.0 if s.blend is None else self._number(s.blend)
+            if through and not zone > 0:
+                raise ScriptError(f"a zone of {zone:g} mm for corners is not above zero")
             return commands.MoveLinear(
-                self._pose(s.target), frame, metres, ramp, along, s.tcp, elbow
+                end, frame, metres, ramp, along, s.tcp, elbow, through, zone / 1000.0
             )
-        assert s.via is not None, "it was checked"
-        via = self._pose(s.via)
+        via = self._pose(s.via[0])
         end = self._pose(s.target)
         return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp, elbow)
 

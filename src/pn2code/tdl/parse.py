@@ -72,7 +72,8 @@ _WORDS = {
     "DIVIDE": "`/`",
 }  # fmt: skip
 _EXTERNAL = ("$track", "$turntable")
-_With = t.Along | str | t.Expression
+_With = t.Along | str | t.Expression | tuple[t.Expression]
+"""An external axis, a tool frame, an arm angle, and (in a tuple) the zone of corners."""
 """What stands after `with`: an external axis, the name of a tool frame, an arm angle."""
 _STATEMENTS = {
     "MOVE",
@@ -333,11 +334,13 @@ class _Builder(Transformer[Token, Any]):
         told: list[_With] = next((x for x in rest if isinstance(x, list)), [])
         along = tuple(x for x in told if isinstance(x, t.Along))
         tcps = [x for x in told if isinstance(x, str)]
-        elbows = [x for x in told if not isinstance(x, t.Along | str)]
+        elbows = [x for x in told if not isinstance(x, t.Along | str | tuple)]
+        zones = [x[0] for x in told if isinstance(x, tuple)]
         to_pose = target is not None and not isinstance(target, Token | t.Axes)
         for found, article, what, example in (
             (tcps, "a", "tool frame", "$linear p with $tool NAME"),
             (elbows, "an", "arm angle", "$joint p with $arm angle = 30 deg"),
+            (zones, "a", "zone of its corners", "$linear q via p with $blend = 20 mm"),
         ):
             if len(found) > 1 or (found and not to_pose):
                 self._d.error(
@@ -349,17 +352,18 @@ class _Builder(Transformer[Token, Any]):
                     hint=f"write `move {example}`",
                 )
         frame = next((x for x in rest if isinstance(x, t.Target)), None)
-        said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
+        said: dict[str, Any] = dict(x for x in rest if isinstance(x, tuple))
         return t.Move(
             moved,
             None if isinstance(target, Token) else target,
             frame.name if frame else None,
             said.get("at"),
-            said.get("via"),
+            said.get("via", ()),
             said.get("acceleration"),
             along,
             tcps[0] if tcps else "",
             elbows[0] if elbows else None,
+            zones[0] if zones else None,
             frame.span if frame else None,
             self._span(meta),
         )
@@ -390,8 +394,18 @@ class _Builder(Transformer[Token, Any]):
     def axes(self, meta: Meta, c: list[t.Expression]) -> t.Axes:
         return t.Axes(tuple(c), self._span(meta))
 
-    def via(self, meta: Meta, c: list[t.Expression]) -> tuple[str, t.Expression]:
-        return "via", c[0]
+    def zone(self, meta: Meta, c: list[Any]) -> tuple[t.Expression]:
+        if str(c[0]) != "$blend":
+            self._d.error(
+                codes.EXTERNAL,
+                f"`{c[0]}` says nothing of a move",
+                self._at(c[0]),
+                hint="write `$blend = 20 mm`, or `$track NAME = 1200 mm`",
+            )
+        return (c[1],)
+
+    def via(self, meta: Meta, c: list[t.Expression]) -> tuple[str, tuple[t.Expression, ...]]:
+        return "via", tuple(c)
 
     def pace(self, meta: Meta, c: list[t.Expression]) -> tuple[str, t.Expression]:
         return "at", c[0]

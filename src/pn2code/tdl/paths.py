@@ -138,9 +138,9 @@ def _uses(i: flow.Instruction) -> Iterator[t.Name]:
 def expressions_of(s: t.Simple) -> tuple[t.Expression, ...]:
     """The expressions that a statement evaluates."""
     match s:
-        case t.Move(_, target, _, speed, via, acceleration, along, _):
+        case t.Move(_, target, _, speed, via, acceleration, along, _, elbow, zone):
             goal = target.angles if isinstance(target, t.Axes) else (target,)
-            others = (via, *(a.position for a in along), speed, acceleration)
+            others = (*via, *(a.position for a in along), elbow, zone, speed, acceleration)
             return tuple(e for e in (*goal, *others) if e is not None)
         case t.Speed(_, value):
             return () if value is None else (value,)

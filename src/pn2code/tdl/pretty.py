@@ -154,13 +154,14 @@ def _frame(name: str) -> str:
 def simple(s: t.Simple) -> str:
     """The line of a statement that has no body."""
     match s:
-        case t.Move(motion, target, frame, speed, via, acceleration, along, tcp, elbow):
+        case t.Move(motion, target, frame, speed, via, acceleration, along, tcp, elbow, zone):
             text = f"move {motion.value}"
             text += f" {_goal(target)}" if motion is not t.Motion.EXTERNAL else ""
-            text += f" via {expression(via)}" if via else ""
+            text += f" via {', '.join(map(expression, via))}" if via else ""
             text += f" in {_frame(frame)}" if frame else ""
             more = [*([f"$tool {tcp}"] if tcp else []), *map(_external, along)]
             more += [f"$arm angle = {expression(elbow)}"] if elbow is not None else []
+            more += [f"$blend = {expression(zone)}"] if zone is not None else []
             text += f" with {', '.join(more)}" if more else ""
             text += f" at {expression(speed)}" if speed else ""
             return text + (f" acceleration {expression(acceleration)}" if acceleration else "")

@@ -190,11 +190,13 @@ class Along:
 
 @frozen
 class Move:
-    """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`, `move $circular q via p`.
+    """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`, `move $circular q via p`,
+    `move $linear r via p, q with $blend = 20 mm`.
 
     `target` None is home, or of `$external` nothing; `along`: external axes that move as well (`with ...`);
     `tcp`: the tool frame that comes to the pose (`with $tool gripper`), "": that of the tool;
     `arm_angle`: where the elbow of an arm with seven axes is then (`with $arm angle = 30 deg`);
+    `via`: of an arc one pose on the way, of a line as many as there are corners, rounded within `blend`;
     `frame` None: none was written, which means `world`; `acceleration` None: all of it.
     """
 
@@ -202,11 +204,12 @@ class Move:
     target: Expression | Axes | None
     frame: str | None = None
     speed: Expression | None = None
-    via: Expression | None = None
+    via: tuple[Expression, ...] = ()
     acceleration: Expression | None = None
     along: tuple[Along, ...] = ()
     tcp: str = ""
     arm_angle: Expression | None = None
+    blend: Expression | None = None
     frame_span: Span | None = field(default=None, compare=False, repr=False)
     span: Span = field(default=GENERATED, compare=False, repr=False)
 

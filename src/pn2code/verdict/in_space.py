@@ -186,6 +186,8 @@ def _speeds(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> None:
             except ScriptError:
                 continue  # it depends on what the program is told
             is_arc = move.motion is t.Motion.CIRCULAR
+            if move.via and not is_arc:
+                continue  # several lines, which may be longer together than any of them
             longest = most(robot, cell.motion, is_arc=is_arc)
             if speed > longest.speed:
                 what = "arc" if is_arc else "line"
@@ -343,7 +345,7 @@ def _constant(move: t.Move, constants: _Constants) -> Move:
 def _place_on_the_way(move: t.Move, constants: _Constants) -> Pose | None:
     """Of an arc; None: it is not known before the program runs, so that only its end is looked at."""
     try:
-        value = evaluate(move.via, constants) if move.via is not None else None
+        value = evaluate(move.via[0], constants) if move.via else None
     except ScriptError:
         return None
     if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):

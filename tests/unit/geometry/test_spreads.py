@@ -33,7 +33,7 @@ def shapes(cell: RobotCell) -> dict[str, ArmShape]:
 
 
 def legs(cell: RobotCell) -> list[Leg]:
-    """A joint move, lines that go and turn, one that ends near a straight elbow, the way home, and an arc."""
+    """A joint move, lines that go and turn, one that ends near a straight elbow, the way home, an arc, and corners."""
     planner = Planner(cell)
     first = planner.leg(planner.home("robot2"), MoveJoint(pose_mm(5750.0, 5995.4, 2109.2, 75.0)))
     down = planner.leg(first.end, MoveLinear(pose_mm(0, 0, 100.0), "tool"))
@@ -42,8 +42,11 @@ def legs(cell: RobotCell) -> list[Leg]:
     home = planner.leg(far.end, MoveHome())
     over = MoveCircular(pose_mm(60.0, 0, -90.0), pose_mm(150.0, 0, -40.0, 0, 9.0, 0), "tool")
     arc = planner.leg(first.end, over)
-    out = [first, down, turned, far, home, arc]
-    assert [x.fault for x in out] == [None] * 6
+    by = (pose_mm(90.0, 0, -60.0, 0, 12.0, 0), pose_mm(90.0, 50.0, -90.0, 9.0, 0, 0))
+    through = MoveLinear(pose_mm(10.0, 60.0, -90.0, 0, 0, 15.0), "tool", via=by, blend=0.02)
+    corners = planner.leg(first.end, through)
+    out = [first, down, turned, far, home, arc, corners]
+    assert [x.fault for x in out] == [None] * 7
     return out
 
 
@@ -60,7 +63,7 @@ def corners(track: Track, q: np.ndarray) -> np.ndarray:
     return out
 
 
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize("number", range(7))
 def test_no_point_is_further_off_than_the_spread(
     cell: RobotCell, shapes: dict[str, ArmShape], number: int
 ) -> None:

@@ -31,7 +31,7 @@ from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
-from pn2code.robot.transforms import Array, matrix_of, rotation_about
+from pn2code.robot.transforms import Array, matrix_of, pose_of, rotation_about
 
 DATA: dict[str, Any] = tomllib.loads("""
 [robots.left]
@@ -227,7 +227,7 @@ def test_speeds_of_the_way_are_those_of_the_poses_on_it(command: Any) -> None:
     shifts = (after - before)[:, :3, 3] / (2.0 * h)
     assert np.abs(shifts - way.shifts(s)).max() < 1e-6
     here = way.at(s)
-    spins = way.spins(here[:, :3, :3])
+    spins = way.spins(here[:, :3, :3], s)
     rates = (after - before)[:, :3, :3] / (2.0 * h) @ np.transpose(here[:, :3, :3], (0, 2, 1))
     found = np.stack([rates[:, 2, 1], rates[:, 0, 2], rates[:, 1, 0]], axis=1)
     assert np.abs(found - spins).max() < 1e-6
@@ -353,3 +353,41 @@ def test_the_replay_page_gets_joints_that_slide() -> None:
     numbers = {x["name"]: i for i, x in enumerate(robot["links"])}
     assert np.abs(frames[numbers["plate"]] - plate_at(q[7])).max() < 1e-7
     assert len(robot["links"][numbers["plate"]]["visuals"]) == 2
+
+
+@pytest.mark.parametrize("frame", ["world", "seam"])
+def test_a_way_through_poses_while_external_axes_stand(frame: str) -> None:
+    """As of an arm without them: the ends are exact, the corner is rounded within its zone."""
+    arm = over_seam(35.0)
+    at = np.eye(4)
+    if frame == "seam":
+        at = plate_at(math.radians(35.0)) @ matrix_of(pose_mm(0, 0, 100))
+    begin = tcp(arm.q)
+    here = np.linalg.inv(at) @ begin
+
+    def shifted(x: float, y: float) -> Any:
+        own = here.copy()
+        own[:2, 3] += (x, y)
+        return pose_of(own)
+
+    motion = arm.begin(
+        MoveLinear(shifted(0.1, 0.08), frame, via=(shifted(0.1, 0.0),), blend=0.03), 0.0
+    )
+    assert motion.kind == "blend" and isinstance(motion.trajectory, AlongTrajectory)
+    places = np.stack([tcp(q)[:3, 3] for q in motion.trajectory.on_way(np.linspace(0.0, 1.0, 401))])
+    places = (np.linalg.inv(at) @ np.c_[places, np.ones(401)].T).T[:, :3] - here[:3, 3]
+    assert np.abs(places[0]).max() < 1e-9
+    assert np.abs(places[-1] - [0.1, 0.08, 0.0]).max() < 1e-9
+    off = np.minimum(np.abs(places[:, 1]), np.abs(places[:, 0] - 0.1))
+    near = np.linalg.norm(places - [0.1, 0.0, 0.0], axis=1)
+    assert off[near > 0.03 + 1e-9].max() < 1e-9
+    assert near.min() == pytest.approx(0.01 * math.sin(math.pi / 4.0), rel=0.02)
+
+
+def test_external_axes_do_not_move_on_a_way_through_poses() -> None:
+    far = pose_mm(150, 60, 120, 180, 0, 20)
+    command = MoveLinear(
+        far, "seam", along=(plate(40.0),), via=(pose_mm(80, 90, 120, 180),), blend=0.01
+    )
+    with pytest.raises(MotionFault, match="external axes stand still on a linear move through"):
+        over_seam().begin(command, 0.0)

@@ -118,7 +118,13 @@ def test_no_point_is_further_off_than_the_spread(which: str) -> None:
     over = planner.leg(planner.home("left"), MoveJoint(POSE, tcp="gripper"))
     end = replace(POSE, x=POSE.x + 0.1, ry=POSE.ry - 0.4, rz=POSE.rz + 0.3)
     via = replace(POSE, x=POSE.x + 0.1, z=POSE.z + 0.1)
-    for command in (MoveLinear(end, tcp="gripper"), MoveCircular(via, end, tcp="gripper")):
+    by = replace(via, z=POSE.z + 0.05)
+    through = MoveLinear(end, tcp="gripper", via=(by,), blend=0.03)
+    for command in (
+        MoveLinear(end, tcp="gripper"),
+        MoveCircular(via, end, tcp="gripper"),
+        through,
+    ):
         leg = planner.leg(over.end, command)
         assert leg.fault is None and leg.path is not None
         path = getattr(leg.path, "led", leg.path)

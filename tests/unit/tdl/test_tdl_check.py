@@ -170,7 +170,34 @@ ERRORS = [
         "move $joint home with $track rail = 1 mm",
         "17:23 error[tdl-external] on the way home external axes stand still",
     ),
-    ("move $linear p via p", "17:20 error[tdl-via] only a circular move goes by way of a pose"),
+    (
+        "move $linear p via p",
+        "17:20 error[tdl-via] a linear move by way of poses needs a zone in which its corners are rounded",
+    ),
+    (
+        "move $linear p via p, p with $blend = 0 mm",
+        "17:39 error[tdl-via] the zone of the corners must be above zero",
+    ),
+    (
+        "move $linear p with $blend = 5 mm",
+        "17:30 error[tdl-via] only a linear move by way of poses has a zone for its corners",
+    ),
+    (
+        "move $joint p via p",
+        "17:19 error[tdl-via] only circular and linear moves go by way of a pose",
+    ),
+    (
+        "move $circular p via p, p",
+        "17:25 error[tdl-via] a circular move needs one pose on the way",
+    ),
+    (
+        "move $linear p via p with $blend = 5 mm, $track rail = 1 mm",
+        "17:42 error[tdl-external] external axes stand still on a linear move by way of poses",
+    ),
+    (
+        "move $linear p via p with $zone = 5 mm",
+        "17:27 error[tdl-external] `$zone` says nothing of a move",
+    ),
     (
         "move $circular p via x",
         "17:22 error[tdl-type] the pose on the way must be of type `pose`, but this is `length`",

@@ -52,6 +52,14 @@ def told(move: str, frames: tuple[str, ...] = ("bench", "via")) -> object:
         ),
         ('move $linear p in "via"', MoveLinear(P, "via")),
         (
+            "move $linear p via p, p in bench with $blend = 20 mm at 50 mm/s acceleration 25 %",
+            MoveLinear(P, "bench", 0.05, 0.25, via=(P, P), blend=0.02),
+        ),
+        (
+            "move $linear p via p with $tool gripper, $arm angle = 90 deg, $blend = e * 1 mm",
+            MoveLinear(P, tcp="gripper", arm_angle=math.pi / 2, via=(P,), blend=0.0005),
+        ),
+        (
             "move $circular p via before(p, 100 mm) in bench at 50 mm/s",
             MoveCircular(Pose(0.1, 0.0, 0.4, math.pi, 0.0, 0.0), P, "bench", 0.05),
         ),
@@ -85,6 +93,12 @@ def test_an_acceleration_that_is_computed_is_a_fraction() -> None:
     found = told("e := e * 4.0 move $joint p acceleration e")
     assert isinstance(found, Fault)
     assert found.message == "acceleration 200 % is not above zero and at most 100 %"
+
+
+def test_a_zone_that_is_computed_is_above_zero() -> None:
+    found = told("e := e - 0.5 move $linear p via p with $blend = e * 1 mm")
+    assert isinstance(found, Fault)
+    assert found.message == "a zone of 0 mm for corners is not above zero"
 
 
 def test_frames_are_those_of_the_cell() -> None:

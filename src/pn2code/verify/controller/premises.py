@@ -67,7 +67,7 @@ class Premises:
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
         moves: whether programs move arms: a move that is not possible stops its program; arcs: whether some go on arcs,
-            which need not be there.
+            which need not be there; corners: whether some pass by poses.
         parts: whether programs do something to parts: what is not possible stops its program.
         tools: whether there are tools that robots change.
     """
@@ -79,6 +79,7 @@ class Premises:
     moving: bool = False
     moves: bool = False
     arcs: bool = False
+    corners: bool = False
     parts: bool = False
     tools: bool = False
 
@@ -106,6 +107,7 @@ class Premises:
             bool(config.sensors),
             moves=not MOTIONS.isdisjoint(used.values()),
             arcs="move_circular" in used.values(),
+            corners=any(config.primitives[name].via for name in used),
             parts=any(_handles(config.primitives[name]) for name in used),
             tools=bool(config.tools_at_start),
         )
@@ -136,7 +138,9 @@ class Premises:
     @property
     def reached(self) -> str:
         """That no move stops its program."""
-        return _REACHED.format(arcs="arcs, " if self.arcs else "")
+        return _REACHED.format(
+            arcs=f"{'arcs, ' if self.arcs else ''}{'poses passed, ' if self.corners else ''}"
+        )
 
     def _of_moves(self) -> list[str]:
         """Those of an answer that needs the cell to go on."""
