@@ -96,3 +96,12 @@ def test_a_part_of_the_markings_is_looked_at_again(tmp_path: Path) -> None:
     seen = ("--property", "ctl EF { size (Mark.Top'Go 1) = 1 }", "--max-states", "1")
     code, row, _ = verified(tmp_path, "n > 5, m + m > 0", LARGE, *seen)
     assert code == 3 and not row["complete"] and not row["other_orders"]["harmless"]
+
+
+def test_an_overflow_does_not_hide_a_value_outside_the_colour_set(tmp_path: Path) -> None:
+    guard = "n > 5, n > 0, s = m, s + 1 > 0"
+    text = NET.replace("in C : s", "in C : 3")
+    path = write(text % (LARGE, 2, guard), tmp_path / "n.cpn")
+    done = CliRunner().invoke(app, ["verify", str(path), "-o", str(tmp_path / "runs")])
+    assert done.exit_code == 3 and "Verdict: NOT KNOWN" in done.stdout
+    assert "of `Top.T` Overflow" not in done.stdout

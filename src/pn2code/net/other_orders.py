@@ -19,6 +19,9 @@ something does, CPN Tools may stop there; it need not.
 
 What would only ask what the transition itself asks, in the order here, is left out.
 
+Arithmetic counts as what may raise an exception where `sizes` (`magnitudes`) allow an Overflow, and does not without
+them.
+
 In the same way it is asked whether an equation gives a variable a value outside its colour set (`outside`).
 """
 
@@ -235,7 +238,7 @@ class _Maker:
                     others = [
                         g
                         for j, g in enumerate(t.guards)
-                        if j != i and self._needed(t, g) <= known and not self._plain.raise_in(g)
+                        if j != i and self._needed(t, g) <= known and not self._raising.raise_in(g)
                     ]
                     e = outside(pattern, value, variables, others)
                     yield self._transition(t, way, e), question

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from helpers.netbuilder import flat
 from pn2code.net.flat import FlatNet
+from pn2code.net.guard_order import unsure
 from pn2code.net.magnitudes import ANY, Magnitudes, of_json
 
 NET = """
@@ -129,6 +132,19 @@ def test_equations_give_values_beyond_the_colour_set() -> None:
     net = flat(NET % "t = s, t + 1 > 0, k > 5")
     asked = Magnitudes(net).raising(net.transitions[1])
     assert not any(map(asked.raise_in, net.transitions[1].guards))
+
+
+def test_a_warning_is_for_other_exceptions() -> None:
+    net = flat(NET % "n > 9, m + m > 0")
+    assert not unsure(net)
+    (found,) = unsure(net, Magnitudes(net))
+    assert found.raises.span.text == "m + m > 0"
+
+
+def test_integers_have_the_bits_of_the_program() -> None:
+    net = flat(NET % "n > 9, m + m > 0")
+    wide = replace(net, program=replace(net.program, int_bits=64))
+    assert unsure(net, Magnitudes(net)) and not unsure(wide, Magnitudes(wide))
 
 
 def test_integers_of_json() -> None:
