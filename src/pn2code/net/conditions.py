@@ -23,7 +23,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
-from pn2code.net.raising import Raising
+from pn2code.net.magnitudes import RaisesIn
 from pn2code.net.total import is_total
 from pn2code.net.uses import NetVariables, pattern_variables
 
@@ -61,12 +61,12 @@ class Condition:
     guard: int | None = None
 
 
-def conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> list[Condition]:
+def conditions(t: FlatTransition, raising: RaisesIn, uses: NetVariables) -> list[Condition]:
     """All of a transition, in the order in which they are asked here."""
     return sorted(_conditions(t, raising, uses), key=lambda x: x.at)
 
 
-def _conditions(t: FlatTransition, raising: Raising, uses: NetVariables) -> Iterator[Condition]:
+def _conditions(t: FlatTransition, raising: RaisesIn, uses: NetVariables) -> Iterator[Condition]:
     own = frozenset(t.variables)
     bound: list[frozenset[Symbol]] = [frozenset()]
     steps: set[tuple[int, int]] = set()

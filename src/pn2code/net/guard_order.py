@@ -27,6 +27,7 @@ from pn2code.ml.core.terms import Exp
 from pn2code.net.codes import GUARD_ORDER
 from pn2code.net.conditions import conditions
 from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.net.magnitudes import Magnitudes
 from pn2code.net.other_orders import asking
 from pn2code.net.raising import Raising
 from pn2code.net.uses import NetVariables
@@ -44,9 +45,14 @@ class Unsure:
     first: Exp
 
 
-def unsure(net: FlatNet) -> tuple[Unsure, ...]:
-    """One of each transition at most, in the order of the net; none in PNML nets, which CPN Tools does not read."""
-    made = asking(net)
+def unsure(net: FlatNet, sizes: Magnitudes | None = None) -> tuple[Unsure, ...]:
+    """One of each transition at most, in the order of the net; none in PNML nets, which CPN Tools does not read.
+
+    Args:
+        net: the net.
+        sizes: how large its integers may become: an Overflow counts, too; None: it does not.
+    """
+    made = asking(net, sizes)
     if made is None:
         return ()
     found: dict[int, Unsure] = {}

@@ -19,6 +19,9 @@ something does, CPN Tools may stop there; it need not.
 
 What would only ask what the transition itself asks, in the order here, is left out.
 
+Arithmetic counts as what may raise an exception where `sizes` (`magnitudes`) allow an Overflow, and does not without
+them.
+
 In the same way it is asked whether an equation gives a variable a value outside its colour set (`outside`).
 """
 
@@ -47,6 +50,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.magnitudes import Magnitudes, RaisesIn
 from pn2code.net.outside import bind_raised, holds, is_restricted, outside
 from pn2code.net.raising import Raising
 from pn2code.net.terms import TermReader, binary
@@ -123,12 +127,17 @@ _Way = tuple[_Source, ...]
 """Sources in an order in which each has what it needs."""
 
 
-def asking(net: FlatNet) -> Asking | None:
-    """The net with what else could be asked; None: no other order asks more. PNML nets have one order only."""
+def asking(net: FlatNet, sizes: Magnitudes | None = None) -> Asking | None:
+    """The net with what else could be asked; None: no other order asks more. PNML nets have one order only.
+
+    Args:
+        net: the net.
+        sizes: how large its integers may become, where arithmetic that may raise an Overflow is asked, too.
+    """
     if net.file.lower().endswith(".pnml"):
         return None
     uses = NetVariables(net.program.variables)
-    maker = _Maker(net, Raising(net.program), uses)
+    maker = _Maker(net, sizes, uses)
     own = len(net.transitions)
     more: list[FlatTransition] = []
     questions: list[Question] = []
@@ -149,14 +158,18 @@ def asking(net: FlatNet) -> Asking | None:
 
 
 class _Maker:
-    def __init__(self, net: FlatNet, raising: Raising, uses: NetVariables) -> None:
+    def __init__(self, net: FlatNet, sizes: Magnitudes | None, uses: NetVariables) -> None:
         self._net = net
-        self._raising = raising
+        self._sizes = sizes
+        self._plain = Raising(net.program)
+        self._raising: RaisesIn = self._plain
         self._uses = uses
         self._reader = TermReader(net.program, uses, Diagnostics())
 
     def of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         """A transition for each expression and way; None where there are too many ways."""
+        if self._sizes is not None:
+            self._raising = self._sizes.raising(t)
         yield from self._raising_of(t)
         yield from self._outside_of(t)
 
@@ -175,7 +188,8 @@ class _Maker:
                 for way in ways:
                     hiding = self._hiding(t, asked, i, way)
                     is_tested = c.guard is not None and e is t.guards[c.guard]
-                    is_open = is_tested and not any(self._catches(t, s) for s in way)
+                    may_bind = is_tested and self._plain.raise_in(e)
+                    is_open = may_bind and not any(self._catches(t, s) for s in way)
                     if hiding is None and not is_open:
                         continue
                     asks = bind_raised(e) if is_open else e
@@ -356,7 +370,9 @@ class _Maker:
         for arc in t.arcs:
             if arc.kind in TAKING and arc.inscription is not None:
                 texts = [e for x in arc.inscription.terms for e in texts_of(x)]
-                is_known = all(map(is_total, texts)) and not self._needed(t, *texts)
+                is_known = all(map(is_total, texts)) and not (
+                    self._needed(t, *texts) or any(map(self._raising.raise_in, texts))
+                )
                 (own if is_known else others).add(arc.place)
         return frozenset(own - others)
 

@@ -3,7 +3,8 @@
 may = Raising(net.program)
 may.raise_in(guard)      # False for `length l > 0`, True for `hd l`, `n div k` and `fn [x] => x`
 
-As in `total`, an Overflow is taken where it comes, and so is a function that never ends.
+As in `total`, an Overflow is taken where it comes (`magnitudes` knows where it may), and so is a function that never
+ends.
 """
 
 from __future__ import annotations

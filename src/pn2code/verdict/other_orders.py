@@ -16,9 +16,9 @@ from pn2code.base.deadline import TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.conditions import conditions
 from pn2code.net.flat import FlatTransition
+from pn2code.net.magnitudes import ANY, Magnitudes, of_json
 from pn2code.net.other_orders import Asking, asking
 from pn2code.net.outside import RAISED
-from pn2code.net.raising import Raising
 from pn2code.net.uses import NetVariables
 from pn2code.semantics.game.every_order import raises_in_every_order
 from pn2code.semantics.game.token_game import Game, GameError
@@ -59,7 +59,7 @@ def look(
         return found
     try:
         with limits.deadline.enforced():
-            made = asking(opened.flat)
+            made = asking(opened.flat, _sizes(opened, found, options))
     except TimeIsOverError:
         return replace(found, orders=OtherOrders("seconds"))
     return (
@@ -67,6 +67,19 @@ def look(
         if made is None
         else replace(found, orders=_asked(opened, made, found, limits, options))
     )
+
+
+def _sizes(opened: OpenNet, found: Exploration, options: ExploreOptions) -> Magnitudes:
+    """How large integers are, by the markings where all of them and all of their colours are known."""
+    measured = None
+    if found.complete and found.bounds is not None:
+        measured = [
+            max((of_json(x) for _, x in b.upper_multiset), default=0)
+            if b.upper_multiset is not None and len(b.upper_multiset) >= b.upper_colours
+            else ANY
+            for b in found.bounds
+        ]
+    return Magnitudes(opened.flat, measured, is_initial=options.initial is None)
 
 
 def _asked(
@@ -130,7 +143,8 @@ def _is_everywhere(opened: OpenNet, found: Exploration) -> bool:
     if shown is not None:
         return shown
     # The marking is not known. Where the search computes nothing of this kind, it was an occurrence that raised it.
-    asked = conditions(t, Raising(opened.flat.program), NetVariables(opened.flat.program.variables))
+    raising = Magnitudes(opened.flat, is_initial=False).raising(t)
+    asked = conditions(t, raising, NetVariables(opened.flat.program.variables))
     return not any(c.may_raise for c in asked) or len(asked) == len(t.arcs) == 1
 
 

@@ -13,6 +13,7 @@ from typing import Literal
 from pn2code.base.frozen import frozen
 from pn2code.net import guard_order
 from pn2code.net.flat import FlatNet
+from pn2code.net.magnitudes import Magnitudes
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raises
 from pn2code.verify.exploring import nondeterminism
@@ -164,17 +165,20 @@ def does(there: RaisedThere) -> str:
 
 
 def _in_order(net: FlatNet, found: Exploration) -> str:
-    """Of a warning that conditions may be asked in another order, what became of it, after a blank; or ""."""
-    warned = guard_order.unsure(net)
-    if not warned:
-        return ""
+    """Of conditions that may be asked in another order, what became of it, after a blank; or ""."""
     if found.complete and found.orders is not None:
         return " In every order in which CPN Tools may ask conditions none of them raises an exception."
+    warned = guard_order.unsure(net)
+    warning = " (warning `guard-order`)"
+    if not warned and not found.complete and found.orders is None:
+        warned, warning = guard_order.unsure(net, Magnitudes(net)), ""
+    if not warned:
+        return ""
     names = ", ".join(f"`{x.transition.name}`" for x in warned[:MOST_NAMED])
     more = f" and {len(warned) - MOST_NAMED} more" if len(warned) > MOST_NAMED else ""
     return (
         f" This holds for the order in which conditions are asked here; CPN Tools may ask those of {names}{more} in "
-        "another, and stop with an exception (warning `guard-order`)."
+        f"another, and stop with an exception{warning}."
     )
 
 
