@@ -34,8 +34,10 @@ from pn2code.robot.transforms import Array
 
 COVERED = 1e-7
 """Of the size of a mesh: so far a face of it may be outside of all pieces."""
-_FOLLOWS = 0.02
+_FOLLOWS = 0.01
 """How near the pieces come to the mesh if there may be enough of them, of half of its size."""
+_TRIES = 8
+"""How often CoACD divides it, for the best of these."""
 _LITTLE = 0.002
 """Of the size of a mesh: by what a piece grows by no more is not divided among others."""
 _HALVINGS = 8
@@ -66,13 +68,13 @@ def pieces(path: Path, most: int) -> tuple[Array, ...]:
         raise NoPieces(
             "package `coacd` is not installed; `pip install 'pn2code[hulls]'` brings it"
         ) from None
-    said = f"{_FORM} {version} {_FOLLOWS} {COVERED} {most}".encode()
+    said = f"{_FORM} {version} {_FOLLOWS} {_TRIES} {COVERED} {most}".encode()
     digest = hashlib.sha256(said + points.tobytes() + b"|" + triangles.tobytes()).hexdigest()[:40]
     folder = private_folder()
     kept = folder / f"hulls-{digest}.json" if folder is not None else None
     if kept is not None and (found := _kept(kept)):
         return found
-    out = cover(points, triangles, _divided(points, triangles, most))
+    out = _best(points, triangles, _divided(points, triangles, most))
     if kept is not None:
         with suppress(OSError):  # it is made again
             write_whole(kept, json.dumps([p.tolist() for p in out]).encode())
@@ -97,8 +99,26 @@ def _kept(path: Path) -> tuple[Array, ...]:
         return ()
 
 
-def _divided(points: Points, triangles: Triangles, most: int) -> list[Array]:
-    """As CoACD divides it, always in the same way."""
+def _best(points: Points, triangles: Triangles, tries: list[list[Array]]) -> tuple[Array, ...]:
+    """Of some divisions, when they cover the mesh, the one that is least too large: CoACD cuts where chance has it."""
+    best: tuple[Array, ...] = ()
+    least, why = np.inf, NoPieces("CoACD finds no pieces of it")
+    for found in tries:
+        try:
+            grown = cover(points, triangles, found)
+        except NoPieces as problem:
+            why = problem
+            continue
+        size = sum(_Piece.around(p).volume for p in grown)
+        if size < least:
+            least, best = size, grown
+    if not best:
+        raise why
+    return best
+
+
+def _divided(points: Points, triangles: Triangles, most: int) -> list[list[Array]]:
+    """As CoACD divides it, `_TRIES` times, always in the same ways."""
     from pn2code.robot import coacd_child
 
     used, which = np.unique(triangles, return_inverse=True)
@@ -110,6 +130,7 @@ def _divided(points: Points, triangles: Triangles, most: int) -> list[Array]:
             triangles=which.reshape(-1, 3).astype(np.int32),
             most=most,
             threshold=_FOLLOWS,
+            tries=_TRIES,
         )
         command = [sys.executable, "-P", str(coacd_child.__file__), str(source), str(target)]
         try:
@@ -125,10 +146,10 @@ def _divided(points: Points, triangles: Triangles, most: int) -> list[Array]:
             last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
             raise NoPieces("CoACD cannot divide it" + "".join(f": {line}" for line in last))
         with np.load(target) as found:
-            out = [np.array(found[f"piece_{i}"], float) for i in range(len(found.files))]
-    if not out:
-        raise NoPieces("CoACD finds no pieces of it")
-    return out
+            out: list[list[Array]] = [[] for _ in range(_TRIES)]
+            for name in found.files:
+                out[int(name.split("_")[0])].append(np.array(found[name], float))
+    return [x for x in out if x]
 
 
 # That nothing sticks out
@@ -141,6 +162,7 @@ class _Piece:
     offsets: Array
     faces: Array
     outwards: Array
+    volume: float
 
     @staticmethod
     def around(points: Array) -> _Piece:
@@ -153,7 +175,12 @@ class _Piece:
         planes = np.unique(hull.equations, axis=0)
         faces = points[hull.simplices]
         return _Piece(
-            points[hull.vertices], planes[:, :3], planes[:, 3], faces, hull.equations[:, :3]
+            points[hull.vertices],
+            planes[:, :3],
+            planes[:, 3],
+            faces,
+            hull.equations[:, :3],
+            float(hull.volume),
         )
 
     def off(self, points: Array) -> Array:

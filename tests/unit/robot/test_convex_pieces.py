@@ -20,14 +20,18 @@ from pn2code.robot.parts import Parts
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import Array
 
-PROFILE = ((-0.4, 0), (0.4, 0), (0.4, 0.9), (0.35, 0.9), (0.35, 0.5), (-0.35, 0.5), (-0.35, 0.9), (-0.4, 0.9))  # fmt: skip
+PROFILE = (
+    *((-0.4, 0), (0.4, 0), (0.4, 0.9), (0.35, 0.9)),
+    *((0.35, 0.5), (-0.35, 0.5), (-0.35, 0.9), (-0.4, 0.9)),
+)
 CAPS = ((0, 1, 4, 5), (1, 2, 3, 4), (0, 5, 6, 7))
 
 
-def trough(folder: Path, lid: bool = True) -> Path:
-    """An upright U, 0.5 m long along x: its floor is at 0.5 m, its walls end at 0.9 m."""
+def trough(folder: Path, lid: bool = True, top: float = 0.9) -> Path:
+    """An upright U, 0.5 m long along x: its floor is at 0.5 m, its walls end at `top`."""
     n = len(PROFILE)
-    points = [(x, y, z) for x in (-0.25, 0.25) for y, z in PROFILE]
+    profile = [(y, top if z > 0.5 else z) for y, z in PROFILE]
+    points = [(x, y, z) for x in (-0.25, 0.25) for y, z in profile]
     faces = [(i, (i + 1) % n, (i + 1) % n + n) for i in range(n)]
     faces += [(i, (i + 1) % n + n, i + n) for i in range(n)]
     for a, b, c, d in CAPS if lid else CAPS[1:]:
@@ -150,19 +154,14 @@ def test_a_part_stands_in_a_pocket(hulls: int, tmp_path: Path) -> None:
     try:
         for part in parts.present.values():
             backend.set_part(part)
-        gaps = {
-            frozenset((c.a, c.b)): c.distance
-            for name in ("box.1", "box.2")
-            for c in backend.around(name, 0.2)
-        }
+        beside = [backend.around(name, 0.2) or () for name in ("box.1", "box.2")]
     finally:
         backend.close()
-    one, other = (
-        gap for names, gap in sorted(gaps.items(), key=str) if names & {"u", "trough.1"}
-    )
+    gaps = [x.distance for found in beside for x in found if x.name in ("u", "trough.1")]
     rests = [parts.rest(parts.present[n]) for n in ("box.1", "box.2")]
     on = [r.on if r is not None else () for r in rests]
     if hulls == 1:
-        assert max(one, other) < -0.1 and on == [(), ()]
+        assert len(gaps) == 2 and max(gaps) < -0.05 and on == [(), ()]
     else:
-        assert min(one, other) > -1e-5 and on == [("u",), ("trough.1",)]
+        # PyBullet has a margin of 1 mm around hulls.
+        assert len(gaps) == 2 and min(gaps) > -0.001 - 1e-5 and on == [("u",), ("trough.1",)]
