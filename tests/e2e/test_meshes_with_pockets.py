@@ -15,7 +15,10 @@ from unit.robot.test_convex_pieces import trough
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
 
 TABLE = '{ name = "table", size = [0.4, 0.4, 0.5], pose = { x = 1.5, y = -0.6, z = 0.25 } }'
-MESH = '{{ name = "table", kind = "mesh", file = "trough.obj", hulls = {}, pose = {{ x = 1.5, y = -0.6, z = -0.002 }} }}'
+MESH = (
+    '{{ name = "table", kind = "mesh", file = "trough.obj", hulls = {}, '
+    "pose = {{ x = 1.5, y = -0.6, z = -0.002 }} }}"
+)
 
 
 @pytest.mark.parametrize("hulls", [1, 4])
