@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from pn2code.robot.convex_pieces import COVERED, NoPieces, cover, pieces
 from pn2code.robot.hulls import Hull
 from pn2code.robot.mesh_files import read
 from pn2code.robot.parts import Parts
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import Array
 
@@ -165,3 +167,67 @@ def test_a_part_stands_in_a_pocket(hulls: int, tmp_path: Path) -> None:
     else:
         # PyBullet has a margin of 1 mm around hulls.
         assert len(gaps) == 2 and min(gaps) > -0.001 - 1e-5 and on == [("u",), ("trough.1",)]
+
+
+TOOL = """<robot name="t"><link name="hand"><collision><origin xyz="0 0 0.1"/>
+<geometry><mesh filename="trough.obj" hulls="{hulls}" scale="0.1 0.1 0.1"/></geometry></collision></link>
+<link name="tcp"/>
+<joint name="j" type="fixed"><parent link="hand"/><child link="tcp"/></joint></robot>
+"""
+
+
+def with_tool(folder: Path, hulls: str, d: Diagnostics) -> RobotCell | None:
+    (folder / "hand.urdf").write_text(TOOL.format(hulls=hulls))
+    data = tomllib.loads(TOML)
+    data["robots"]["robot"]["tool"] = "hand.urdf"
+    return load(data, folder, nowhere, d)
+
+
+@pytest.mark.bullet
+def test_a_link_of_several_pieces(tmp_path: Path) -> None:
+    """PyBullet measures to a collision mesh of a tool by its pieces: what is in its pocket is not in it."""
+    trough(tmp_path)
+    d = Diagnostics()
+    depths = []
+    for hulls in ("1", "4"):
+        cell = with_tool(tmp_path, hulls, d)
+        assert cell is not None, [e.message for e in d.errors]
+        backend = BulletBackend(cell, looks=False)
+        try:
+            p, client, own = backend._p, backend._client, backend._robots["robot"]
+            link = own.index["tool_hand"]
+            place, turn = p.getLinkState(own.body, link, physicsClientId=client)[4:6]
+            at, _ = p.multiplyTransforms(place, turn, (0.0, 0.0, 0.17), (0.0, 0.0, 0.0, 1.0))
+            shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.01, physicsClientId=client)
+            ball = p.createMultiBody(0, shape, -1, at, physicsClientId=client)
+            found = p.getClosestPoints(ball, own.body, 0.1, -1, link, physicsClientId=client)
+            depths.append(min(c[8] for c in found))
+        finally:
+            backend.close()
+    assert depths[0] < 0.0 and depths[1] == pytest.approx(0.009, abs=0.0015)
+
+
+@pytest.mark.parametrize("hulls", ["0", "257", "many", "2.5"])
+def test_an_attribute_that_is_no_count_is_refused(hulls: str, tmp_path: Path) -> None:
+    trough(tmp_path)
+    d = Diagnostics()
+    assert with_tool(tmp_path, hulls, d) is None
+    assert any("no whole number from 1 to 256" in e.message for e in d.errors)
+
+
+def test_a_link_that_cannot_be_divided_is_refused(tmp_path: Path) -> None:
+    trough(tmp_path, lid=False)
+    d = Diagnostics()
+    assert with_tool(tmp_path, "4", d) is None
+    assert any("not closed" in e.message for e in d.errors)
+
+
+def test_without_coacd_it_is_said_how_to_get_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def missing(name: str) -> str:
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(convex_pieces.metadata, "version", missing)
+    with pytest.raises(NoPieces, match="pn2code\\[hulls\\]"):
+        pieces(trough(tmp_path), 5)
