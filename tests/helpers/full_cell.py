@@ -222,7 +222,7 @@ warning_clearance = 0.03
 objects = [
     { name = "table", kind = "box", pose = { x = 0.5 }, size = [1.0, 0.6, 0.8], colour = [0.1, 0.2, 0.3, 0.4] },
     { name = "post", kind = "cylinder", radius = 0.1, length = 2.0 },
-    { name = "stone", kind = "mesh", file = "stone.obj", scale = 2.0 },
+    { name = "stone", kind = "mesh", file = "stone.obj", scale = 2.0, hulls = 2 },
 ]
 contacts = [{ a = "arm/link_6", b = "table", depth = 0.001 }]
 
@@ -263,6 +263,7 @@ length = 0.3
 kind = "mesh"
 file = "stone.obj"
 scale = 0.5
+hulls = 3
 
 [tools.hand]
 model = "counterpoint"
@@ -404,7 +405,9 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
     Args:
         section: what is looked at: arms are read only where it is about them, and the layout `near` for layouts.
     """
-    (folder / "stone.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    (folder / "stone.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    )
     path = folder / "cell.toml"
     path.write_text(as_toml(data), encoding="utf-8")
     d = Diagnostics()

@@ -37,7 +37,7 @@ _MARK = (
     "# The cache of pn2code. What is here is made again when it is missing.\n"
 )
 _OWN = {
-    "": r"[0-9a-f]{40}\.template(\w+\.tmp)?|(cpnml|property|tdl)-[0-9a-f]+(\.json|\.lark|-\w+\.tmp)",
+    "": r"[0-9a-f]{40}\.template(\w+\.tmp)?|(cpnml|hulls|property|tdl)-[0-9a-f]+(\.json|\.lark|-\w+\.tmp)",
     "modules": r".+\.pyc(\.\d+)?",
     "programs": r"[a-z]+(-runtime)?-[0-9a-f]{16,}(\.a)?(-\w+\.tmp)?|build-\w{8}/.+",
     "answers": r"[a-z]+-[0-9a-f]{40}(\.json|-\w+\.tmp)",

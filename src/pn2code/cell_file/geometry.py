@@ -5,6 +5,8 @@ from __future__ import annotations
 from pn2code.cell_file.keys import Key, Section
 
 _DEGREES = "degrees"
+MOST_HULLS = 256
+"""Convex pieces of one mesh."""
 POSE = Section(
     tuple(
         Key(name, "number", meaning, default=0.0, unit=unit)
@@ -188,7 +190,7 @@ def _shape() -> tuple[Key, ...]:
         Key(
             "file",
             "text",
-            "An OBJ or STL file, relative to cell.toml; its collision shape is its convex hull.",
+            "An OBJ or STL file, relative to cell.toml; its collision shape is its convex hull, or `hulls` of them.",
             "an OBJ or STL file, relative to cell.toml",
             required=True,
             only=mesh,
@@ -200,6 +202,16 @@ def _shape() -> tuple[Key, ...]:
             default=1.0,
             low=0.0,
             above=True,
+            only=mesh,
+        ),
+        Key(
+            "hulls",
+            "whole",
+            "Of how many convex pieces at most its collision shape is, which together cover it "
+            "([robots.md](robots.md#meshes-with-pockets)); 1: its convex hull.",
+            default=1,
+            low=1,
+            high=MOST_HULLS,
             only=mesh,
         ),
         Key(

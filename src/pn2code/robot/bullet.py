@@ -216,7 +216,9 @@ class BulletBackend:
     def _load_urdf(self, name: str, text: str, *, fixed: bool = True, looks: bool = True) -> int:
         path = Path(self._folder.name) / f"{name.replace('/', '_')}.urdf"
         folder = Path(self._folder.name)
-        read = urdf.for_bullet(text, looks, lambda mesh: collision_meshes.for_bullet(mesh, folder))
+        read = urdf.for_bullet(
+            text, looks, lambda mesh, most: collision_meshes.for_bullet(mesh, most, folder)
+        )
         path.write_text(read, encoding="utf-8")
         # Implicit cylinders: as hulls of 32 sides they would be up to 1 mm too thin.
         return int(
@@ -264,7 +266,7 @@ class BulletBackend:
         lines = [f'<robot name={_quoted(body.name)}><link name="base">']
         lines += [f"<collision>{_solid(s)}</collision>" for s in body.solids]
         if body.hull is not None and body.hull.file is not None:
-            lines.append(f"<collision>{_mesh(body.hull.file, body.hull)}</collision>")
+            lines.append(f"<collision>{_mesh(body.hull.file, body.hull, body.pieces)}</collision>")
         for i, look in enumerate(body.looks if looks else ()):
             path = look.file
             if look.mesh is not None:
@@ -838,9 +840,8 @@ def _quoted(text: str) -> str:
     return f'"{escape(text)}"'
 
 
-def _mesh(path: Path, look: Look) -> str:
+def _mesh(path: Path, look: Look, hulls: int = 1) -> str:
     scale = " ".join([repr(look.scale)] * 3)
     name = _quoted(str(path.resolve()))
-    return (
-        f"{_origin(look.pose)}<geometry><mesh filename={name} scale={_quoted(scale)}/></geometry>"
-    )
+    of = f' {urdf.HULLS}="{hulls}"' if hulls > 1 else ""
+    return f"{_origin(look.pose)}<geometry><mesh filename={name} scale={_quoted(scale)}{of}/></geometry>"

@@ -144,12 +144,14 @@ def add_shape(link: etree._Element, thing: SceneObject, name: str) -> None:
                 geometry, "cylinder", radius=repr(thing.radius), length=repr(thing.length)
             )
         else:
-            etree.SubElement(
+            mesh = etree.SubElement(
                 geometry,
                 "mesh",
                 filename=str(thing.mesh.resolve() if thing.mesh else ""),
                 scale=axis_words([thing.scale] * 3),
             )
+            if thing.hulls > 1:
+                mesh.set(urdf.HULLS, str(thing.hulls))
         if tag == "visual":
             material = etree.SubElement(element, "material", name=name)
             etree.SubElement(material, "color", rgba=axis_words(thing.colour))

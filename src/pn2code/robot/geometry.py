@@ -46,7 +46,7 @@ class Body:
 
     Args:
         name: as in contact rules and messages: "panel/skin".
-        solids: what distances are measured to; hull: or the convex hull of a mesh file.
+        solids: what distances are measured to; hull: or that of a mesh file: its convex hull, or so many pieces.
         draw: makes its looks, which takes longer than its solids.
         ignored_by: robots that stand on it: their base link is not tested against it.
     """
@@ -55,6 +55,7 @@ class Body:
     solids: tuple[Solid, ...]
     draw: Callable[[], tuple[Look, ...]]
     hull: Look | None = None
+    pieces: int = 1
     ignored_by: tuple[str, ...] = ()
 
     @property
@@ -118,7 +119,7 @@ def _floor(cell: RobotCell) -> Body:
     high = [max(v) + 2.2 for v in zip(*points, strict=True)]
     solid = _upright_box((*low, -0.1), (*high, 0.0))
     names = tuple(r.name for r in cell.robots)
-    return Body("floor", (solid,), partial(looks.floor, low, high), None, names)
+    return Body("floor", (solid,), partial(looks.floor, low, high), ignored_by=names)
 
 
 def _stands_at(robot: CellRobot) -> Array:
@@ -144,7 +145,7 @@ def _pedestal(robot: CellRobot) -> Body:
     pose = matrix_of(Pose(base.x, base.y, base.z / 2.0, 0.0, 0.0, base.rz))
     solids = (_box(pose, (2 * half, 2 * half, base.z)),)
     draw = partial(looks.pedestal, half, base)
-    return Body(f"{robot.name}_pedestal", solids, draw, None, (robot.name,))
+    return Body(f"{robot.name}_pedestal", solids, draw, ignored_by=(robot.name,))
 
 
 def _rail(robot: CellRobot) -> Iterator[Body]:
@@ -167,7 +168,7 @@ def _rail(robot: CellRobot) -> Iterator[Body]:
     solids = (Solid("box", pose, size),)
     name = f"{robot.name}_rail"
     thing = SceneObject(name, "box", pose, _RAIL, size=size)
-    yield Body(name, solids, partial(looks.thing, thing), None, (robot.name,))
+    yield Body(name, solids, partial(looks.thing, thing), ignored_by=(robot.name,))
 
 
 @lru_cache(maxsize=4)  # layouts differ in their robots, seldom in the panel
@@ -229,4 +230,4 @@ def body_of(o: SceneObject) -> Body:
         solid = Solid("cylinder", o.pose, (o.radius, o.radius, o.length))
         return Body(o.name, (solid,), partial(looks.thing, o))
     hull = Look(o.colour, file=o.mesh, pose=o.pose, scale=o.scale)
-    return Body(o.name, (), partial(looks.thing, o), hull=hull)
+    return Body(o.name, (), partial(looks.thing, o), hull=hull, pieces=o.hulls)

@@ -22,7 +22,17 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.carried import plate_of
 from pn2code.robot.external import ExternalAxis
 from pn2code.robot.geometry import Body, bodies
-from pn2code.robot.hulls import Face, Hull, around, face, inside, overlap, part_below, shrunk
+from pn2code.robot.hulls import (
+    Face,
+    Hull,
+    around,
+    face,
+    inside,
+    middle_of,
+    overlap,
+    part_below,
+    shrunk,
+)
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.scene_objects import SceneObject
@@ -122,7 +132,7 @@ class Ground:
         self._low = np.array([low for low, _ in extents]).reshape(-1, 3)
         self._high = np.array([high for _, high in extents]).reshape(-1, 3)
         self.plates = dict(_plates(cell))
-        self._kinds = {k.name: _shape_of(k) for k in cell.parts.values()}
+        self._kinds = {k.name: _shapes_of(k) for k in cell.parts.values()}
         self._tops: dict[int, Face | None] = {}
 
     @staticmethod
@@ -133,11 +143,14 @@ class Ground:
 
     def radius(self, kind: str) -> float:
         """m: of a ball around the frame of a part of a kind."""
-        return self._kinds[kind].radius
+        return max(h.radius for h in self._kinds[kind])
 
     def middle(self, kind: PartKind, frame: Array) -> Array:
         """Where the middle of a part is, in the world."""
-        return self._kinds[kind.name].at(frame).middle
+        return middle_of(self._placed(kind, frame))
+
+    def _placed(self, kind: PartKind, frame: Array) -> list[Hull]:
+        return [h.at(frame) for h in self._kinds[kind.name]]
 
     def rest(
         self,
@@ -154,14 +167,35 @@ class Ground:
             plates: where the turntables are, in the world.
             slack: m: what is so much further away, or overlaps by so much less, still counts.
         """
-        hull = self._kinds[kind.name].at(frame)
+        hulls, others = self._placed(kind, frame), tuple(others)
+        on: set[str] = set()
+        areas: list[Array] = []
+        below, gap = "", math.inf
+        for hull in hulls:
+            more, nearest, least = self._beneath(hull, others, plates, slack, areas)
+            on |= more
+            if least < gap:
+                below, gap = nearest, least
+        if gap > SEARCHED:
+            below = ""
+        area = around(np.vstack(areas)) if areas else np.zeros((0, 2))
+        return Rest(tuple(sorted(on)), below, gap, inside(area, middle_of(hulls)[:2]))
+
+    def _beneath(
+        self,
+        hull: Hull,
+        others: Iterable[tuple[str, PartKind, Array]],
+        plates: Mapping[str, Array],
+        slack: float,
+        areas: list[Array],
+    ) -> tuple[set[str], str, float]:
+        """What a piece stands on, and the nearest thing below it; `areas` gets where it does."""
         lowest = face(hull, up=False, steep=_ANY, within=REST_GAP)
         assert lowest is not None, "some face of a convex piece looks down"
         low, high = hull.extent
         half = float(hull.middle[2] - low[2])
         own_faces = [_smaller(x, _EDGE - slack) for x in (lowest.core, lowest.polygon)]
         on: set[str] = set()
-        areas: list[Array] = []
         below, gap = "", math.inf
         reach = REST_GAP + slack + _ROUNDING
         for name, top in self._near(low, high, half, others, plates):
@@ -179,11 +213,7 @@ class Ground:
             if least <= reach:
                 on.add(name)
                 areas += [part_below(common, gaps, reach) for common, gaps in found]
-        if gap > SEARCHED:
-            below = ""
-        area = around(np.vstack(areas)) if areas else np.zeros((0, 2))
-        middle = inside(area, hull.middle[:2])
-        return Rest(tuple(sorted(on)), below, gap, middle)
+        return on, below, gap
 
     def _near(
         self,
@@ -216,9 +246,9 @@ class Ground:
                 if may(*hull.extent) and (top := _top(hull)) is not None:
                     yield name, top
         for name, kind, frame in others:
-            hull = self._kinds[kind.name].at(frame)
-            if may(*hull.extent) and (top := _top(hull)) is not None:
-                yield name, top
+            for hull in self._placed(kind, frame):
+                if may(*hull.extent) and (top := _top(hull)) is not None:
+                    yield name, top
 
 
 def _smaller(polygon: Array, by: float) -> Array:
@@ -226,10 +256,10 @@ def _smaller(polygon: Array, by: float) -> Array:
     return out if len(out) >= 3 else polygon
 
 
-def _shape_of(kind: PartKind) -> Hull:
-    hull = Hull.of(kind.shape)
-    assert hull is not None, "cells with parts that are no bodies are refused"
-    return hull
+def _shapes_of(kind: PartKind) -> tuple[Hull, ...]:
+    hulls = Hull.of(kind.shape)
+    assert hulls, "cells with parts that are no bodies are refused"
+    return hulls
 
 
 def _top(hull: Hull) -> Face | None:
@@ -243,8 +273,7 @@ def _hulls(body: Body) -> Iterator[Hull]:
         yield own.at(matrix_of(solid.pose))
     look = body.hull
     if look is not None and look.file is not None:
-        found = Hull.around(look.file, look.scale)
-        if found is not None:
+        for found in Hull.around(look.file, look.scale, body.pieces):
             yield found.at(matrix_of(look.pose))
 
 
@@ -266,9 +295,7 @@ def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
 def _plate(robot: CellRobot, axis: ExternalAxis, does: str, *more: SceneObject) -> Plate:
     hulls = []
     for thing in (*more, *axis.objects):
-        own = Hull.of(thing)
-        if own is not None:
-            hulls.append(own.at(matrix_of(thing.pose)))
+        hulls += [own.at(matrix_of(thing.pose)) for own in Hull.of(thing)]
     corners = np.vstack([np.zeros((1, 3)), *(h.corners for h in hulls)])
     reach = float(np.linalg.norm(corners if axis.is_track else corners[:, :2], axis=1).max())
     up = (robot.T_world_base @ axis.T_base_axis)[:3, :3] @ axis.direction

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.convex_pieces import NoPieces, pieces
 from pn2code.robot.mesh_files import NoMesh, read
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array
@@ -33,11 +35,13 @@ class Hull:
 
     Args:
         corners: (n, 3); normals: of its faces, outwards, (m, 3); middle: its centre of mass.
+        volume: of a mesh, to weigh its pieces against each other.
     """
 
     corners: Array
     normals: Array
     middle: Array
+    volume: float = 1.0
 
     @staticmethod
     def box(size: tuple[float, float, float]) -> Hull:
@@ -64,28 +68,31 @@ class Hull:
         )
 
     @staticmethod
-    def of(o: SceneObject) -> Hull | None:
-        """A thing in its own frame, wherever it is; None: its file cannot be read, which is told elsewhere."""
+    def of(o: SceneObject) -> tuple[Hull, ...]:
+        """A thing in its own frame, wherever it is; none: its file cannot be read, which is told elsewhere."""
         if o.kind == "box":
-            return Hull.box(o.size)
+            return (Hull.box(o.size),)
         if o.kind == "cylinder":
-            return Hull.cylinder(o.radius, o.length)
-        return None if o.mesh is None else Hull.around(o.mesh, o.scale)
+            return (Hull.cylinder(o.radius, o.length),)
+        return () if o.mesh is None else Hull.around(o.mesh, o.scale, o.hulls)
 
     @staticmethod
-    def around(path: Path, scale: float) -> Hull | None:
-        """Around the points of a mesh file; None: it cannot be read, or is flat."""
-        found = _around(path)
-        return (
-            None
-            if found is None
-            else Hull(scale * found.corners, found.normals, scale * found.middle)
+    def around(path: Path, scale: float, most: int = 1) -> tuple[Hull, ...]:
+        """Around the points of a mesh file, or at most so many that cover it; none: it cannot be read, or is flat."""
+        return tuple(
+            Hull(scale * h.corners, h.normals, scale * h.middle, h.volume)
+            for h in _around(path, most)
         )
 
     def at(self, frame: Array) -> Hull:
         """The same, placed."""
         turn, shift = frame[:3, :3].T, frame[:3, 3]
-        return Hull(self.corners @ turn + shift, self.normals @ turn, self.middle @ turn + shift)
+        return Hull(
+            self.corners @ turn + shift,
+            self.normals @ turn,
+            self.middle @ turn + shift,
+            self.volume,
+        )
 
     @property
     def extent(self) -> tuple[Array, Array]:
@@ -98,22 +105,36 @@ class Hull:
         return float(np.linalg.norm(self.corners, axis=1).max())
 
 
+def middle_of(hulls: Sequence[Hull]) -> Array:
+    """The centre of mass of pieces that are one thing."""
+    if len(hulls) == 1:
+        return hulls[0].middle
+    weights = np.array([h.volume for h in hulls])
+    return np.asarray(weights @ np.array([h.middle for h in hulls]) / weights.sum())
+
+
 @lru_cache(maxsize=32)
-def _around(path: Path) -> Hull | None:
-    from scipy.spatial import ConvexHull, QhullError  # takes a while, and few cells have meshes
+def _around(path: Path, most: int) -> tuple[Hull, ...]:
+    from scipy.spatial import QhullError
 
     try:
-        points, _ = read(path)
-        hull = ConvexHull(points)
-    except (OSError, NoMesh, QhullError, ValueError):
-        return None
+        found = pieces(path, most) if most > 1 else (read(path)[0],)
+        return tuple(map(_around_points, found))
+    except (OSError, NoMesh, NoPieces, QhullError, ValueError):
+        return ()
+
+
+def _around_points(points: Array) -> Hull:
+    from scipy.spatial import ConvexHull  # takes a while, and few cells have meshes
+
+    hull = ConvexHull(points)
     corners = points[hull.vertices]
     inside = corners.mean(axis=0)
     triangles = points[hull.simplices] - inside
     volumes = np.abs(np.linalg.det(triangles))
     middle = inside + (volumes[:, None] * triangles.sum(axis=1)).sum(axis=0) / (4.0 * volumes.sum())
     normals = np.unique(np.round(hull.equations[:, :3], 9), axis=0)
-    return Hull(corners, normals, middle)
+    return Hull(corners, normals, middle, float(volumes.sum()) / 6.0)
 
 
 @frozen(eq=False)

@@ -104,7 +104,7 @@ def load(
     named = dict(table("robots", None).named(ROBOT))
     taken = _said_of(primitives, "takes")
     robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
-    hulls = [hull for k in kinds.values() if (hull := Hull.of(k.shape)) is not None]
+    hulls = [hull for k in kinds.values() for hull in Hull.of(k.shape)]
     around = Around(folder, places, max((h.radius for h in hulls), default=0.0))
     devices = read_devices(table("devices", None), around)
     scene = _scene(table("scene", SCENE), robots, devices, names, (kinds, tools), folder)

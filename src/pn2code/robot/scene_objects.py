@@ -20,7 +20,8 @@ class SceneObject:
     Args:
         size: of a box: full lengths.
         radius: of a cylinder; length likewise.
-        mesh: path of an OBJ or STL file; collisions are checked against its convex hull.
+        mesh: path of an OBJ or STL file; collisions are checked against its convex hull,
+            or against `hulls` convex pieces that cover it, at most.
         scale: of a mesh.
     """
 
@@ -33,6 +34,7 @@ class SceneObject:
     length: float = 0.0
     mesh: Path | None = None
     scale: float = 1.0
+    hulls: int = 1
 
 
 def read_colour(t: Table) -> Colour:
@@ -65,4 +67,5 @@ def read_shape(t: Table, name: str, pose: Pose, folder: Path) -> SceneObject | N
     file = folder / t.text("file")
     if "file" in t.data and not (file.is_file() and file.suffix.lower() in (".obj", ".stl")):
         t.wrong("file", "the path of an OBJ or STL file that exists")
-    return SceneObject(name, "mesh", pose, colour, mesh=file, scale=t.number("scale"))
+    scale, hulls = t.number("scale"), t.whole("hulls")
+    return SceneObject(name, "mesh", pose, colour, mesh=file, scale=scale, hulls=hulls)

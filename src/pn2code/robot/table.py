@@ -105,6 +105,18 @@ class Table:
             return fallback
         return float(value)
 
+    def whole(self, name: str) -> int:
+        """A whole number within its bounds; the default where there is none."""
+        key = self._key(name)
+        fallback = cast(int, key.default)
+        if not self.has(name):
+            return fallback
+        value = self.data[name]
+        if not isinstance(value, int) or isinstance(value, bool) or not key.within(value):
+            self.wrong(name, _expected(key))
+            return fallback
+        return value
+
     def numbers(self, name: str) -> tuple[float, ...]:
         """A list of finite numbers, as many as its key says; the default where there is none."""
         key = self._key(name)
@@ -224,6 +236,8 @@ def _expected(key: Key) -> str:
         count = f"{', '.join(some)} or {last}" if some else last
         bounds = _bounds(key)
         return f"a list of {count} numbers{bounds}" if count else f"a list of numbers{bounds}"
+    if key.kind == "whole":
+        return f"a whole number{_bounds(key)}"
     return f"a number{_bounds(key)}" if key.kind == "number" else "a name"
 
 

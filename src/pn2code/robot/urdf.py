@@ -7,7 +7,7 @@ for PyBullet. Any robot's URDF in the usual form can be read, so that users brin
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -16,6 +16,7 @@ import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen
+from pn2code.cell_file.geometry import MOST_HULLS
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.payload import Rating
@@ -221,6 +222,12 @@ def _shapes(link: Any) -> None:
         (solid,) = solids
         if solid.tag == "mesh":
             _attribute(solid, "filename")
+            if not _is_count(solid.get(HULLS, "1")):
+                raise _BadError(
+                    f"`{HULLS}` of a mesh of link `{link.get('name')}` is no whole number from 1 to "
+                    f"{MOST_HULLS}",
+                    solid.sourceline,
+                )
             sizes = tuple(map(abs, _numbers(solid, "scale", 3, "1 1 1")))
         else:
             sizes = tuple(
@@ -233,6 +240,17 @@ def _shapes(link: Any) -> None:
             )
 
 
+def _is_count(text: str) -> bool:
+    return text.isascii() and text.isdigit() and 1 <= int(text) <= MOST_HULLS
+
+
+def hulls_of(mesh: Any) -> int:
+    """Of how many convex pieces a mesh is at most as a collision shape; 1: its convex hull."""
+    return int(mesh.get(HULLS, "1"))
+
+
+HULLS = "hulls"
+"""The attribute of a `mesh` that says of how many convex pieces it is as a collision shape."""
 _SIZES: dict[str, tuple[tuple[str, int], ...]] = {
     "box": (("size", 3),),
     "cylinder": (("radius", 1), ("length", 1)),
@@ -405,7 +423,10 @@ def as_one_link(tree: Urdf) -> str:
     return str(etree.tostring(out, encoding="unicode", pretty_print=True))
 
 
-def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda path: path) -> str:
+MeshesOf = Callable[[Path, int], Sequence[Path]]
+
+
+def for_bullet(text: str, looks: bool, meshes_of: MeshesOf = lambda path, _: (path,)) -> str:
     """The same URDF as PyBullet reads it right: shapes where the links are, without its own ideas of masses.
 
     PyBullet puts the *centre of gravity* of a base link where the link should be, refuses an `inertial` or a
@@ -413,7 +434,7 @@ def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda 
     `concave` for hollow, and cuts lines of more than 8191 bytes.
 
     Args:
-        mesh_of: the file that it reads instead of one of a collision mesh.
+        meshes_of: the files that it reads instead of one of a collision mesh that is of so many convex pieces.
     """
     root = etree.fromstring(text.encode())
     for tag in ("inertial",) if looks else ("inertial", "visual"):
@@ -424,11 +445,19 @@ def for_bullet(text: str, looks: bool, mesh_of: Callable[[Path], Path] = lambda 
     for i, material in enumerate(root.iter("material")):
         if not material.get("name"):
             material.set("name", f"unnamed_{i}")
+    added: list[tuple[Any, Any]] = []
     for collision in root.iter("collision"):
         if "concave" in collision.attrib:
             del collision.attrib["concave"]
         for mesh in collision.iter("mesh"):
-            mesh.set("filename", str(mesh_of(Path(mesh.get("filename", "")))))
+            first, *more = meshes_of(Path(mesh.get("filename", "")), hulls_of(mesh))
+            for file in more:
+                further = copy.deepcopy(collision)
+                next(further.iter("mesh")).set("filename", str(file))
+                added.append((collision, further))
+            mesh.set("filename", str(first))
+    for collision, further in added:
+        collision.addnext(further)
     for axis in root.iter("axis"):
         numbers = np.array(_numbers(axis, "xyz", 3, "1 0 0"))
         length = float(np.linalg.norm(numbers))

@@ -25,7 +25,7 @@ from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
-from pn2code.robot.urdf import Urdf, mesh_file
+from pn2code.robot.urdf import Urdf, hulls_of, mesh_file
 from pn2code.robot.zones_table import Zone
 
 _STEP = 1e-6
@@ -160,7 +160,7 @@ class ZoneWatch:
 def _of_kind(kind: PartKind | ToolKind) -> Iterator[Hull | None]:
     """The shapes of a part or tool, in its frame; None: one cannot be read."""
     if isinstance(kind, PartKind):
-        yield Hull.of(kind.shape)
+        yield from Hull.of(kind.shape) or (None,)
         return
     tree = kind.tool.urdf
     for link in tree.links:
@@ -204,38 +204,37 @@ def _shapes(tree: Urdf, link: str) -> Iterator[Hull | None]:
     element = next(e for e in tree.xml.findall("link") if e.get("name") == link)
     for collision in element.findall("collision"):
         try:
-            hull = _shape(collision.find("geometry"), tree)
+            hulls = tuple(_shape(collision.find("geometry"), tree)) or (None,)
             origin = collision.find("origin")
             frame = np.eye(4)
             if origin is not None:
                 frame[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
                 frame[:3, :3] = rotation_xyz(*_numbers(origin.get("rpy", "0 0 0")))
         except ValueError:  # what should be numbers is none
-            hull = None
-        yield hull.at(frame) if hull is not None else None
+            hulls = (None,)
+        for hull in hulls:
+            yield hull.at(frame) if hull is not None else None
 
 
-def _shape(geometry: etree._Element | None, tree: Urdf) -> Hull | None:
+def _shape(geometry: etree._Element | None, tree: Urdf) -> Iterator[Hull]:
+    """A shape, or its convex pieces; nothing: it cannot be read."""
     for shape in geometry if geometry is not None else ():
         match shape.tag:
             case "box":
                 x, y, z = _numbers(shape.get("size", ""))
-                return Hull.box((x, y, z))
+                yield Hull.box((x, y, z))
             case "cylinder":
-                return Hull.cylinder(float(shape.get("radius", "")), float(shape.get("length", "")))
+                yield Hull.cylinder(float(shape.get("radius", "")), float(shape.get("length", "")))
             case "sphere":
                 across = 2.0 * float(shape.get("radius", ""))
-                return Hull.box((across, across, across))
+                yield Hull.box((across, across, across))
             case "capsule":  # `length` is that without its round ends
                 across = 2.0 * float(shape.get("radius", ""))
-                return Hull.box((across, across, float(shape.get("length", "")) + across))
+                yield Hull.box((across, across, float(shape.get("length", "")) + across))
             case "mesh":
-                hull = Hull.around(mesh_file(shape, tree.path.parent), 1.0)
-                if hull is None:
-                    return None
                 scale = np.array(_numbers(shape.get("scale", "1 1 1")))
-                return Hull(hull.corners * scale, hull.normals, hull.middle * scale)
-    return None
+                for hull in Hull.around(mesh_file(shape, tree.path.parent), 1.0, hulls_of(shape)):
+                    yield Hull(hull.corners * scale, hull.normals, hull.middle * scale)
 
 
 def _numbers(text: str) -> tuple[float, float, float]:

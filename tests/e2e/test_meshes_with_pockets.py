@@ -1,0 +1,38 @@
+"""An arm reaches into a trough: a collision with its convex hull, free with its pieces, in runs and in the check."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from e2e.test_check_geometry import looked
+from helpers.carrying_cell import TOML, write
+from helpers.processes import pn2code
+from unit.robot.test_convex_pieces import trough
+
+pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
+
+TABLE = '{ name = "table", size = [0.4, 0.4, 0.5], pose = { x = 1.5, y = -0.6, z = 0.25 } }'
+MESH = (
+    '{{ name = "table", kind = "mesh", file = "trough.obj", hulls = {}, '
+    "pose = {{ x = 1.5, y = -0.6, z = -0.002 }} }}"
+)
+
+
+@pytest.mark.parametrize("hulls", [1, 4])
+def test_reaching_into_a_trough(hulls: int, tmp_path: Path) -> None:
+    assert TOML.count(TABLE) == 1
+    cell = write(tmp_path / "cell", toml=TOML.replace(TABLE, MESH.format(hulls)))
+    trough(cell, top=0.7)
+    found = looked(cell, tmp_path / "looked")
+    ran = pn2code("run", cell, "--backend", "bullet", "-o", tmp_path / "out")
+    answers = {m.answer for m in found.moves}
+    if hulls == 1:
+        assert "no" in answers and ran.returncode != 0
+        assert any("table" in m.problem for m in found.moves)
+    else:
+        assert answers == {"yes"}, [m.problem for m in found.moves]
+        summary = json.loads(next((tmp_path / "out").rglob("summary.json")).read_text())
+        assert ran.returncode == 0, (ran.stdout, summary)
