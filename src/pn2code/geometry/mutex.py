@@ -335,11 +335,11 @@ def _is(net: FlatNet, group: Group, token: core.Exp) -> str:
     return " andalso ".join(own) or "true"
 
 
-def stuck(graph: CellGraph) -> int:
+def stuck(graph: CellGraph) -> frozenset[int]:
     """States from which the cell cannot come to its end any more; without final places: in which nothing can happen."""
     count = len(graph.arcs)
     if not graph.partition.final_places:
-        return sum(not arcs for arcs in graph.arcs)
+        return frozenset(i for i, arcs in enumerate(graph.arcs) if not arcs)
     before: list[list[int]] = [[] for _ in range(count)]
     for i, arcs in enumerate(graph.arcs):
         for _, target in arcs:
@@ -351,7 +351,30 @@ def stuck(graph: CellGraph) -> int:
             if state not in fine:
                 fine.add(state)
                 todo.append(state)
-    return count - len(fine)
+    return frozenset(range(count)) - fine
+
+
+def is_stuck_anew(before: CellGraph, after: CellGraph, place: int | None) -> bool:
+    """Whether a state may be stuck with a place that without it is not.
+
+    Which states of both are the same is told by how many tokens the places of the cell's net hold: of those that hold
+    as many, all have to be stuck without it. `place`: but for this one, which is there before as well.
+    """
+    places = len(before.partition.net.places)
+
+    def marked(graph: CellGraph, states: Collection[int]) -> set[frozenset[tuple[int, int]]]:
+        return {
+            frozenset((p, n) for p, n in graph.marked[i].items() if p < places and p != place)
+            for i in states
+        }
+
+    old = stuck(before)
+    known = marked(before, old)
+    if (
+        before.partition.final_places
+    ):  # else only the last state is stuck, not those on the way to it
+        known -= marked(before, frozenset(range(len(before.arcs))) - old)
+    return not marked(after, stuck(after)) <= known
 
 
 def fired(graph: CellGraph) -> frozenset[int]:

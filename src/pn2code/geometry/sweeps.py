@@ -72,7 +72,8 @@ class Sweeper:
     def nearest(self, a: Track, b: Track, known: float) -> Apart:
         """How near two legs come that keep apart, as far as it is less than what is known (m)."""
         is_free = "ptp" in (a.leg.kind, b.leg.kind)
-        two = Two(a, b, self._of_two(a, b), is_free, self, self._skipped(a, b, is_free=is_free))
+        skipped = self._skipped(a, b, is_free=is_free or bool(_turning(a, b)))
+        two = Two(a, b, self._of_two(a, b), is_free, self, skipped)
         return deepest(two, Apart("clear", known, known))
 
     def _of_two(self, a: Track, b: Track) -> Measure:
@@ -80,13 +81,18 @@ class Sweeper:
         # What stands on a turntable that stands, too, does not go with a joint move of the arm.
         free = {x.robot for x in (a, b) if x.leg.kind == "ptp"}
         calm = {x.robot for x in (a, b) if x.is_calm}
+        turning = _turning(a, b)
 
         def measure(q_a: Array, q_b: Array, limit: float) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
             found = self._backend.pairs("robots", a.robot, limit, b.robot)
             return [
-                replace(x, stands=True) if free and free <= calm.intersection(x.rides) else x
+                replace(x, allowed=None)
+                if not turning.isdisjoint(x.rides)
+                else replace(x, stands=True)
+                if free and free <= calm.intersection(x.rides)
+                else x
                 for x in found
             ]
 
@@ -281,6 +287,11 @@ class Sweeper:
         if a.trouble:
             return Apart("open", 0.0, best, where, (at, 0.0), a.trouble)
         return Apart("clear", max(0.0, min(least, best)), best, where, (at, 0.0))
+
+
+def _turning(a: Track, b: Track) -> set[str]:
+    """The robots of which a turntable turns: what is on it touches no other one, on whatever move."""
+    return {x.robot for x in (a, b) if x.leg.kind != "axis" and not x.is_calm}
 
 
 def much_less(distance: float) -> float:

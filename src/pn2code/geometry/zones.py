@@ -24,6 +24,10 @@ _NONE = (
     "no places of the supervisor are marked exactly while these robots are there: let it command each of them by a "
     "transition of its own, wait for the answer, and bring an arm out of the zone before it rests"
 )
+_STUCK = (
+    "with it, states may have no way to the end that have one without it, as far as is known: mend first that some "
+    "have none"
+)
 _RESTS = "no places of the supervisor are marked exactly while these are there"
 
 
@@ -39,7 +43,7 @@ class Zones:
     def __init__(self, found: Situations, comparison: Comparison, explore: Explore) -> None:
         self._cell = found.doing.planner.cell
         self._found, self._comparison, self._explore = found, comparison, explore
-        self._stuck = mutex.stuck(found.graph)
+        self._stuck = len(mutex.stuck(found.graph))
 
     def proposals(self, bad: Collection[Sides], touching: Sequence[Sides]) -> list[Proposal]:
         """One for each zone.
@@ -143,12 +147,14 @@ class Zones:
         graph = self._explore(mutex.guarded(before.partition, guard, name))
         if graph is None or graph.why or not graph.arcs:
             return "the cell with the place was not seen to its end", ""
-        stuck = mutex.stuck(graph)
+        stuck = len(mutex.stuck(graph))
         if stuck > self._stuck:
             return (
                 f"with it, {stuck:,} states have no way to the end, without it {self._stuck:,}",
                 "",
             )
+        if stuck and mutex.is_stuck_anew(before, graph, guard.place):
+            return _STUCK, ""
         lost = mutex.fired(before) - mutex.fired(graph)
         if lost:
             return f"with it, `{before.partition.net.transitions[min(lost)].name}` never occurs", ""
@@ -166,8 +172,8 @@ class Zones:
         end = "the cell comes to its end from each of them"
         if not graph.partition.final_places:
             end = "there is no deadlock"
-        if self._stuck:
-            end = f"no more of them than before have no way to the end ({stuck:,})"
+        if stuck:
+            end = f"only states have no way to the end ({stuck:,}) that have none without it"
         return "", (
             f"tried: with it these arms keep apart in each of the {len(graph.arcs):,} states of the cell, and {end}"
         )

@@ -138,7 +138,8 @@ class Monitor:
                 fault; a joint move passes through one without noticing (the wrist does so often).
                 On a joint move nothing may touch anything: parts that may come together do so only
                 on lines and arcs and while the tool works.
-            calm: the robots whose turntables stand: what is on these does not go with a joint move.
+            calm: the robots whose turntables stand: what is on these does not go with a joint move. What
+                is on others touches no other robot, on lines and arcs neither.
         """
         kinds = kinds or {}
         t = float(t)
@@ -169,6 +170,8 @@ class Monitor:
                 for name in others
             )
             gap = replace(found, allowed=found.permitted(is_free=free))
+            if any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides):
+                gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:
                 continue

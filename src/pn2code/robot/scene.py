@@ -109,6 +109,7 @@ def load(
     devices = read_devices(table("devices", None), around)
     scene = _scene(table("scene", SCENE), robots, devices, names, (kinds, tools), folder)
     zones = read_zones(table("zones", None))
+    _expect_own_names(table("tools", None), tools, robots)
     if len(d.errors) != before:
         return None
     cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones, tools)
@@ -373,6 +374,21 @@ def _scene(
     )
     t.done()
     return out
+
+
+def _expect_own_names(
+    t: Table, tools: Mapping[str, ToolKind], robots: tuple[CellRobot, ...]
+) -> None:
+    """No tool is called as a part of a robot that changes tools: carried it would be `left/plate` as that is."""
+    for robot in robots:
+        for name in tools:
+            if robot.tools and name in robot.arm.urdf.links:
+                t.d.error(
+                    codes.ROBOT_VALUE,
+                    f"a tool and a part or an axis of robot `{robot.name}` are called `{name}`",
+                    t.at(name),
+                    hint="give each a name of its own: messages and contact rules name them",
+                )
 
 
 def _expect_holders(

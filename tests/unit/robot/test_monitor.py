@@ -182,3 +182,7 @@ def test_what_stands_on_a_calm_plate_does_not_go_with_a_joint_move(monitor, back
     assert fault(found, kinds={**moving, "robot2": "ptp"}) is not None
     assert fault(replace(found, rides=())) is not None
     assert fault(replace(found, distance=-0.003)) is not None
+    on_a_line = {"robot1": "lin", "robot2": "tool"}
+    assert fault(found, on_a_line) is None
+    assert fault(found, on_a_line, calm=("robot2",)) is not None
+    assert fault(replace(found, rides=()), on_a_line, calm=("robot2",)) is None
