@@ -137,11 +137,15 @@ def report(
         with line, ticking:
             carried = steps.carry_out(wanted, out, told)
         chapters = [findings.read(done, out) for done in carried]
-        _write(chapters, _subject(path, config, inputs), net, out)
+        left_out = _left_out(config, backend)
+        _write(chapters, _subject(path, config, inputs), net, out, left_out)
     except OSError as problem:
         _refuse(f"cannot work in `{out}`: {os_reason(problem)}")
     verdict = findings.worst([c.answer for c in chapters])
-    console.print(f"report in {out / INDEX}: {_SAYS[verdict]}", soft_wrap=True)
+    said = (
+        _SAYS[verdict] if not left_out else f"{_SAYS_OF_PART[verdict]}; not looked at: {left_out}"
+    )
+    console.print(f"report in {out / INDEX}: {said}", soft_wrap=True)
     code = _CODES[verdict]
     if code is not Exit.OK:
         raise typer.Exit(code)
@@ -152,6 +156,7 @@ _SAYS = {
     "no": "something is not as it should be",
     "not known": "something is not known",
 }
+_SAYS_OF_PART = {**_SAYS, "yes": "all that was looked at is as it should be"}
 _CODES = {"yes": Exit.OK, "no": Exit.MODEL, "not known": Exit.INCONCLUSIVE}
 
 
@@ -188,6 +193,13 @@ def _swept(config: CellConfig | None, wanted: list[str], backend: BackendChoice)
     return tuple(dict.fromkeys(wanted)) or ("",)
 
 
+def _left_out(config: CellConfig | None, backend: BackendChoice) -> str:
+    """What nobody looks at, as it was asked for; "": nothing."""
+    if config is None or not config.robots or backend is not BackendChoice.FAKE:
+        return ""
+    return "the moves of the arms, and whether arms and devices keep apart (`--backend fake`)"
+
+
 def _prepare(out: Path) -> None:
     """An empty folder; what an older report has left there is removed, and nothing else."""
     why = why_folder_unwritable(out)
@@ -216,7 +228,13 @@ def _subject(path: Path, config: CellConfig | None, inputs: Path | None) -> list
     return hashes.of_files(folder, found)
 
 
-def _write(chapters: list[Chapter], subject: list[tuple[str, str]], net: Path, out: Path) -> None:
+def _write(
+    chapters: list[Chapter],
+    subject: list[tuple[str, str]],
+    net: Path,
+    out: Path,
+    left_out: str,
+) -> None:
     """The first page, the table of traceability and the hashes."""
     from pn2code.base.whole_file import whole_file
     from pn2code.dossier import hashes, origin, traceability
@@ -252,6 +270,7 @@ def _write(chapters: list[Chapter], subject: list[tuple[str, str]], net: Path, o
         pictures={run: pictures(out, run) for run in runs},
         drawn=traceability.drawn(out / NETS),
         elements=elements,
+        left_out=left_out,
     )
     with whole_file(out / INDEX) as beside:
         beside.write_text(index(chapters, facts), encoding="utf-8")

@@ -27,6 +27,7 @@ class Facts:
         pictures: of each run, file and what it shows.
         drawn: anchors in the drawing of the net, by ids.
         elements: of the net, with their code; (): no programs were made.
+        left_out: what was not looked at, as it was asked for, and why.
     """
 
     title: str
@@ -38,6 +39,7 @@ class Facts:
     pictures: Mapping[str, Sequence[tuple[str, str]]]
     drawn: Mapping[str, str]
     elements: Sequence[Element]
+    left_out: str = ""
 
     @property
     def leads(self) -> dict[str, str]:
