@@ -7,8 +7,8 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.owners import touching
 from pn2code.cell.partition import Owner
 from pn2code.cell.place_finder import PlaceFinder
-from pn2code.diagnostics import Diagnostics, Note
-from pn2code.net.flat import FlatNet
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net.flat import FlatNet, FlatPlace
 
 
 def final_places(
@@ -41,12 +41,7 @@ def final_places(
             continue
         others = sorted((writers[place.index] | readers[place.index]) - {0})
         if place.index in out:
-            d.error(
-                codes.CELL_VALUE,
-                f"`final` names place `{place.name}` twice",
-                at,
-                hint="remove one of the names",
-            )
+            _twice("final", place, at, d)
         elif others:
             who = " and ".join(owners[i].phrase for i in others)
             shared = 0 in writers[place.index] | readers[place.index] or len(others) > 1
@@ -107,15 +102,15 @@ def failed_places(
                 hint="name it in `final` of [supervisor] as well: the cell ends when it holds a token",
             )
         elif place.index in out:
-            d.error(
-                codes.CELL_VALUE,
-                f"`failed` names place `{place.name}` twice",
-                at,
-                hint="remove one of the names",
-            )
+            _twice("failed", place, at, d)
         else:
             out.append(place.index)
     return tuple(out)
+
+
+def _twice(key: str, place: FlatPlace, at: Origin, d: Diagnostics) -> None:
+    text = f"`{key}` names place `{place.name}` twice"
+    d.error(codes.CELL_VALUE, text, at, hint="remove one of the names")
 
 
 def failed_names(net: FlatNet, config: CellConfig | None) -> frozenset[str]:
