@@ -440,7 +440,7 @@ class _Portfolio:
             for method in self._methods(kinds, number, which):
                 mine = [n for n in open_ if self.places[n].part.kind in METHODS[method]]
                 if self.only or method in ("ctl", "ltl"):
-                    mine = mine[which::2]
+                    mine = mine[(which + number) % 2 :: 2]  # the lanes have different orders
                 if mine:
                     tasks.append((method, mine))
             if tasks:
