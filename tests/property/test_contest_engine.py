@@ -163,6 +163,26 @@ def test_linear_time(program: Path) -> None:
         }, tables
 
 
+@pytest.mark.parametrize("seed", [1, 2, 5])
+def test_runs_of_many_parts_that_turn_by_themselves(program: Path, seed: int) -> None:
+    """2^40 markings: a run is found that keeps one of the parts where it is, and one that comes again and again to
+    where 30 of them have turned."""
+    parts = range(40)
+    names = {f"{what}{i}": (2 * i + k,) for i in parts for k, what in enumerate(("rests", "runs"))}
+    pre = [{2 * i + k: 1} for i in parts for k in range(2)]
+    post = [{2 * i + 1 - k: 1} for i in parts for k in range(2)]
+    moves = {f"t{i}": (i,) for i in range(len(pre))}
+    tables = Tables((1, 0) * len(parts), tuple(pre), tuple(post), names, moves)
+    runs = AtMost(Constant(1), Tokens(("runs0",)))
+    many = AtMost(Constant(30), Tokens(tuple(f"runs{i}" for i in parts)))
+    formulas = [_all("G", Op("F", (Op("not", (runs,)),)))]
+    if seed == 5:
+        formulas.append(_all("F", Op("G", (Op("not", (many,)),))))
+    texts = [linear.question(tables, i, f) for i, f in enumerate(formulas)]
+    found = list(ask(program, [Task("ltl", tables.text(texts), SECONDS, 24, seed)]))
+    assert [a.value for a in found if isinstance(a, Answer)] == [True] * len(formulas)
+
+
 def _all(operator: str, *parts: Formula) -> Formula:
     return Op("A", (Op(operator, parts),))
 

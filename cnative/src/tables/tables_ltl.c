@@ -6,50 +6,15 @@
  * closes a component with a mark, a run is found; so a yes seldom needs much of the state space. A dead marking follows
  * itself.
  */
-#include "tables.h"
+#include "tables_ltl.h"
 
 #include <string.h>
 
-enum { FIRST_SLOTS = 1 << 12 };
+enum { FIRST_SLOTS = 1 << 12, DEPTH_FIRST = 4 /* seeds with which the hunt comes later */ };
 
-typedef struct pair {
-    uint32_t marking;
-    uint32_t state;
-    uint32_t index; /* on the path or in one of its components: when it was met, from 1; 0: left for good */
-} pair_t;
-
-typedef struct step {
-    uint32_t pair;
-    uint32_t move; /* of the automaton */
-    uint32_t next; /* successor of the marking */
-} step_t;
-
-typedef struct root {
-    uint32_t index;
-    bool is_accepting;
-} root_t;
-
-typedef struct product {
-    tb_graph_t *graph;
-    const tb_automaton_t *automaton;
-    tb_question_t *question;
-    pair_t *pair;
-    uint64_t pairs;
-    uint64_t pair_room;
-    uint32_t *slot;
-    uint64_t slots;
-    uint64_t *atoms; /* marking -> bits of the atoms, and the highest bit if they are known */
-    uint64_t atom_room;
-    step_t *path;
-    uint64_t steps;
-    uint64_t step_room;
-    root_t *root;
-    uint64_t roots;
-    uint64_t root_room;
-    uint32_t *active;
-    uint64_t actives;
-    uint64_t active_room;
-} product_t;
+/* Of the time of a question, until the search goes over to a hunt, and back. */
+static const double FIRST_PART = 0.3;
+static const double SECOND_PART = 0.7;
 
 #define KNOWN ((uint64_t)1 << 63U)
 
@@ -73,11 +38,11 @@ static uint64_t hash_of(uint32_t marking, uint32_t state)
     return h ^ (h >> 32U);
 }
 
-static uint64_t slot_of(const product_t *p, uint32_t marking, uint32_t state)
+static uint64_t slot_of(const tb_product_t *p, uint32_t marking, uint32_t state)
 {
     uint64_t at = hash_of(marking, state) & (p->slots - 1U);
     while (p->slot[at] != 0U) {
-        const pair_t *found = &p->pair[p->slot[at] - 1U];
+        const tb_pair_t *found = &p->pair[p->slot[at] - 1U];
         if ((found->marking == marking) && (found->state == state)) {
             break;
         }
@@ -86,16 +51,14 @@ static uint64_t slot_of(const product_t *p, uint32_t marking, uint32_t state)
     return at;
 }
 
-/* The number of a pair; *is_new: it was not known. */
-static uint32_t number_of(product_t *p, uint32_t marking, uint32_t state, bool *is_new)
+uint32_t tb_pair_number(tb_product_t *p, uint32_t marking, uint32_t state)
 {
     uint64_t at = slot_of(p, marking, state);
-    *is_new = p->slot[at] == 0U;
-    if (!*is_new) {
+    if (p->slot[at] != 0U) {
         return p->slot[at] - 1U;
     }
     GROW(p->pair, p->pairs, p->pair_room);
-    const pair_t made = { marking, state, 0U };
+    const tb_pair_t made = { marking, state, 0U, 0U, false, false };
     p->pair[p->pairs] = made;
     p->pairs++;
     p->slot[at] = (uint32_t)p->pairs;
@@ -110,7 +73,7 @@ static uint32_t number_of(product_t *p, uint32_t marking, uint32_t state, bool *
     return (uint32_t)(p->pairs - 1U);
 }
 
-static uint64_t atoms_of(product_t *p, uint32_t marking)
+static uint64_t atoms_of(tb_product_t *p, uint32_t marking)
 {
     while (marking >= p->atom_room) {
         GROW(p->atoms, p->atom_room, p->atom_room);
@@ -126,36 +89,37 @@ static uint64_t atoms_of(product_t *p, uint32_t marking)
     return p->atoms[marking];
 }
 
-static void enter(product_t *p, uint32_t pair)
+static void enter(tb_product_t *p, uint32_t pair)
 {
     GROW(p->path, p->steps, p->step_room);
     GROW(p->root, p->roots, p->root_room);
     GROW(p->active, p->actives, p->active_room);
-    const step_t step = { pair, p->automaton->first[p->pair[pair].state], 0U };
+    const tb_path_step_t step = { pair, p->automaton->first[p->pair[pair].state], 0U };
     p->path[p->steps] = step;
     p->steps++;
     p->active[p->actives] = pair;
     p->actives++;
     p->pair[pair].index = (uint32_t)p->actives;
-    const root_t root = { (uint32_t)p->actives, p->automaton->is_accepting[p->pair[pair].state] };
+    p->pair[pair].is_entered = true;
+    const tb_root_t root = { (uint32_t)p->actives, p->automaton->is_accepting[p->pair[pair].state] };
     p->root[p->roots] = root;
     p->roots++;
 }
 
 /* An arc leads back: what lies between is one component. True: it has an accepting state. */
-static bool closes(product_t *p, uint32_t index)
+static bool closes(tb_product_t *p, uint32_t index)
 {
     bool is_accepting = false;
     while (p->root[p->roots - 1U].index > index) {
         is_accepting = is_accepting || p->root[p->roots - 1U].is_accepting;
         p->roots--;
     }
-    root_t *root = &p->root[p->roots - 1U];
+    tb_root_t *root = &p->root[p->roots - 1U];
     root->is_accepting = root->is_accepting || is_accepting;
     return root->is_accepting;
 }
 
-static void leave(product_t *p)
+static void leave(tb_product_t *p)
 {
     const uint32_t index = p->pair[p->path[p->steps - 1U].pair].index;
     p->steps--;
@@ -168,11 +132,9 @@ static void leave(product_t *p)
     }
 }
 
-/* The next pair after the one at the end of the path; false: there is none. */
-static bool next_pair(product_t *p, uint32_t *marking, uint32_t *state)
+bool tb_next_pair(tb_product_t *p, tb_path_step_t *s, uint32_t *marking, uint32_t *state)
 {
-    step_t *s = &p->path[p->steps - 1U];
-    const pair_t at = p->pair[s->pair];
+    const tb_pair_t at = p->pair[s->pair];
     const uint64_t bits = atoms_of(p, at.marking);
     const uint32_t count = p->graph->count[at.marking];
     const uint32_t ways = (count > 0U) ? count : 1U;
@@ -189,22 +151,21 @@ static bool next_pair(product_t *p, uint32_t *marking, uint32_t *state)
     return false;
 }
 
-static tb_answer_t accepted(product_t *p)
+/* Depth first, until it is known or the time is over; then it may go on later. */
+static tb_answer_t accepted(tb_product_t *p)
 {
-    bool is_new = false;
-    enter(p, number_of(p, 0U, 0U, &is_new));
     while (p->steps > 0U) {
         if (!tb_expand(p->graph, p->pair[p->path[p->steps - 1U].pair].marking)) {
             return TB_UNKNOWN;
         }
         uint32_t marking = 0U;
         uint32_t state = 0U;
-        if (!next_pair(p, &marking, &state)) {
+        if (!tb_next_pair(p, &p->path[p->steps - 1U], &marking, &state)) {
             leave(p);
             continue;
         }
-        const uint32_t pair = number_of(p, marking, state, &is_new);
-        if (is_new) {
+        const uint32_t pair = tb_pair_number(p, marking, state);
+        if (!p->pair[pair].is_entered) {
             enter(p, pair);
         } else if ((p->pair[pair].index != 0U) && closes(p, p->pair[pair].index)) {
             return TB_YES;
@@ -218,16 +179,45 @@ static tb_answer_t accepted(product_t *p)
     return TB_NO;
 }
 
-static void answer(tb_graph_t *graph, tb_question_t *q)
+static tb_answer_t depth_first(tb_product_t *p, double until)
 {
-    product_t p;
+    p->graph->is_full = false;
+    tb_limit_time(until);
+    return accepted(p);
+}
+
+static tb_answer_t hunted(tb_product_t *p, double until)
+{
+    p->graph->is_full = false;
+    tb_limit_time(until);
+    return tb_hunt(p) ? TB_YES : TB_UNKNOWN;
+}
+
+/* Depth first for a part of the time, then by a hunt for another one, then depth first again; or the hunt first. */
+static tb_answer_t found(tb_product_t *p, bool is_hunted_first, double until)
+{
+    const double now = tb_elapsed();
+    const double left = until - now;
+    tb_answer_t a = TB_UNKNOWN;
+    enter(p, tb_pair_number(p, 0U, 0U));
+    if (!is_hunted_first) {
+        a = depth_first(p, now + (FIRST_PART * left));
+    }
+    if (a == TB_UNKNOWN) {
+        a = hunted(p, now + ((is_hunted_first ? (1.0 - SECOND_PART) : SECOND_PART) * left));
+    }
+    return (a == TB_UNKNOWN) ? depth_first(p, until) : a;
+}
+
+static void answer(tb_graph_t *graph, tb_question_t *q, bool is_hunted_first, double until)
+{
+    tb_product_t p;
     (void)memset(&p, 0, sizeof p);
     p.graph = graph;
     p.automaton = &q->automaton;
-    p.question = q;
     p.slots = (uint64_t)FIRST_SLOTS;
     p.slot = tb_new(p.slots, sizeof *p.slot);
-    const tb_answer_t a = accepted(&p);
+    const tb_answer_t a = found(&p, is_hunted_first, until);
     if (a != TB_UNKNOWN) {
         tb_say(q, a, "EXPLICIT");
     }
@@ -250,11 +240,10 @@ void tb_ltl(tb_job_t *job, uint64_t seed, double seconds)
     for (uint32_t i = 0U; i < job->questions; i++) {
         tb_question_t *q = &job->question[i];
         if (q->kind == TB_LTL) {
-            tb_limit_time(tb_elapsed()
-                          + ((seconds - tb_elapsed()) / (double)open)); /* what one leaves over the others get */
+            const double now = tb_elapsed();
+            const double until = now + ((seconds - now) / (double)open); /* what one leaves over the others get */
             open--;
-            graph.is_full = false;
-            answer(&graph, q);
+            answer(&graph, q, seed > (uint64_t)DEPTH_FIRST, until);
         }
     }
     tb_graph_free(&graph);

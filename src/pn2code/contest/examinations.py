@@ -56,6 +56,7 @@ class Asked:
         hints: questions with an answer each that decides at once, as `decides` does; another answer says nothing.
         formula: of time, of the kind `kind`; then there are no parts.
         kind: "ctl" or "ltl".
+        at_home: with a home marking (home.py) the value is the opposite if these hints, by number, do not decide.
         why_not: it cannot be asked; why.
     """
 
@@ -67,6 +68,7 @@ class Asked:
     hints: tuple[tuple[Part, bool], ...] = ()
     formula: Formula | None = None
     kind: str = ""
+    at_home: tuple[int, ...] = ()
     why_not: str = ""
 
 
@@ -139,8 +141,11 @@ def _live(tables: Tables) -> Asked:
     parts = tuple(_can_always_occur(tables, name, len(names) <= _FEW) for name in names)
     hints = [(dead, True)] if tables.transitions else []
     first = Implied(tables, again=False).asked()
-    hints += [(_can_occur(tables, name), False) for name in first]
-    return Asked("Liveness", parts, decides=False, value=False, hints=tuple(hints))
+    occur = [(_can_occur(tables, name), False) for name in first]
+    at_home = tuple(len(parts) + len(hints) + i for i in range(len(occur)))
+    return Asked(
+        "Liveness", parts, decides=False, value=False, hints=(*hints, *occur), at_home=at_home
+    )
 
 
 def _can_occur(tables: Tables, name: str) -> Part:

@@ -79,10 +79,12 @@ class _Written:
         raise FormulaError(f"`{f.operator}` inside a formula of LTL")
 
     def states(self, a: Automaton) -> str:
-        """The states with their moves."""
+        """The states with their moves, first those that lead on: a search that stays where it is may do so for ever."""
         words = [str(a.states)]
+        distance = _distances(a)
         for state in range(a.states):
             arcs = [arc for arc in a.arcs if arc.source == state]
+            arcs.sort(key=lambda arc: distance[arc.target])
             words += [str(int(state in a.accepting)), str(len(arcs))]
             words += [f"{arc.target} {self._bits(arc.literals)}" for arc in arcs]
         return " ".join(words)
@@ -104,6 +106,23 @@ class _Written:
             if f.operator == "not"
             else f"{f.operator} {len(parts)} {' '.join(parts)}"
         )
+
+
+def _distances(a: Automaton) -> list[int]:
+    """By state: moves to an accepting one; all lead to one."""
+    sources: dict[int, list[int]] = {}
+    for arc in a.arcs:
+        sources.setdefault(arc.target, []).append(arc.source)
+    found = [a.states] * a.states
+    order = list(a.accepting)
+    for state in order:
+        found[state] = 0
+    for state in order:
+        for source in sources.get(state, ()):
+            if found[source] == a.states:
+                found[source] = found[state] + 1
+                order.append(source)
+    return found
 
 
 def _is_temporal(f: Formula) -> bool:

@@ -21,6 +21,7 @@ from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
+from pn2code.contest.home import Home
 from pn2code.contest.paths import path_of
 from pn2code.contest.playing import TECHNIQUE as PLAYED
 from pn2code.contest.playing import Play, Sought, follow, holds, said_in_words
@@ -83,6 +84,8 @@ class _Line:
     techniques: set[str] = field(default_factory=set)
     hinted: bool = False
     is_done: bool = False
+    is_home: bool = False
+    occurring: set[int] = field(default_factory=set)
     temporal: Temporal | None = None
     asked_for: set[Wanted] = field(default_factory=set)
     why_not: str = ""
@@ -107,11 +110,16 @@ class _Line:
             value = not value if a.is_turned else value
         elif a.decides in self.known.values():
             value = a.value
-        elif len(self.known) == len(a.parts):
+        elif len(self.known) == len(a.parts) or self._is_live_at_home():
             value = not a.value
         else:
             return None
         return Result(a.name, value, " ".join(sorted(self.techniques)) or REWRITING)
+
+    def _is_live_at_home(self) -> bool:
+        """What can occur at all can occur again and again, and nothing is open of the former."""
+        found = self.asked.at_home
+        return self.is_home and bool(found) and self.occurring >= set(found)
 
 
 @record
@@ -198,6 +206,8 @@ class _Portfolio:
             parts: list[tuple[Part, bool | None]] = [(p, None) for p in line.asked.parts]
             for which, (part, hint) in enumerate([*parts, *line.asked.hints]):
                 self.places.append(_Place(line, part, which, hint))
+        self.home: Home | None = None
+        self.home_number = -1
         self.diagrams: dict[int, Diagrams] = {}
         self.fitting: dict[int, tuple[Tables, bool]] = {}
         self.structural: Structural | None = None
@@ -214,6 +224,7 @@ class _Portfolio:
         self.sought: dict[int, Sought] = {}
         if only in ("", "structure"):
             self._start_structural()
+            self._start_home()
         if self.play is not None and only in ("", "walk"):
             self.play.start()
 
@@ -302,8 +313,21 @@ class _Portfolio:
             )
             self.structural.start()
 
+    def _start_home(self) -> None:
+        """Only formulas of CTL, and liveness, gain from it."""
+        of_use = any(
+            line.asked.at_home or (line.temporal is not None and line.asked.kind == "ctl")
+            for line in self.lines
+            if not line.is_done and line.result() is None
+        )
+        if of_use and not self.is_uncoloured:
+            self.home = Home(self.tables, self.home_number, self.said, self.ends)
+            self.home.start()
+
     def end(self) -> None:
         """Nothing is to be asked any more."""
+        if self.home is not None:
+            self.home.end(self.grace)
         if self.structural is not None:
             self.structural.end(self.grace)
         if self.play is not None:
@@ -351,7 +375,7 @@ class _Portfolio:
                 return
 
     def _structural_alone(self) -> Iterator[Answer]:
-        others = [t for t in (self.structural, self.play) if t is not None]
+        others = [t for t in (self.structural, self.play, self.home) if t is not None]
         while others and time.monotonic() < self.ends and any(p.is_open for p in self.places):
             is_running = any(t.is_alive() for t in others)
             try:
@@ -365,7 +389,36 @@ class _Portfolio:
             if isinstance(found, Answer):
                 yield found
 
+    def _at_home(self, answer: Answer) -> Iterator[Result]:
+        """The initial marking is a home marking."""
+        for line in self.lines:
+            if line.is_done:
+                continue
+            line.is_home = True
+            if line.asked.at_home:
+                line.techniques.update(answer.method.split())
+            if line.temporal is not None:
+                before = line.temporal.formula
+                line.temporal.learn_home()
+                if line.temporal.formula != before:
+                    line.techniques.update(answer.method.split())
+                self._ask_for(line)
+            yield from self._finished(line)
+
+    def _finished(self, line: _Line) -> Iterator[Result]:
+        """The result of a line, if it has one now."""
+        result = None if line.is_done else line.result()
+        if result is not None:
+            line.is_done = True
+            for p in self.places:
+                if p.line is line and p.question is not None:
+                    p.question.is_done = True
+            yield result
+
     def _noted(self, answer: Answer) -> Iterator[Result]:
+        if answer.number == self.home_number:
+            yield from self._at_home(answer)
+            return
         place = self.places[answer.number]
         line = place.line
         value = answer.value
@@ -396,16 +449,12 @@ class _Portfolio:
         elif place.hint == value:
             line.hinted = True
         else:
-            return
+            line.occurring.add(place.which)
+            if not line.is_home:
+                return
         if place.wanted is None:
             line.techniques.update(answer.method.split())
-        result = None if line.is_done else line.result()
-        if result is not None:
-            line.is_done = True
-            for p in self.places:
-                if p.line is line and p.question is not None:
-                    p.question.is_done = True
-            yield result
+        yield from self._finished(line)
 
     def _at_most(self, place: _Place, value: int) -> int | None:
         """Without colours places hold at most that; what they hold, if that is known now."""
@@ -440,7 +489,7 @@ class _Portfolio:
             for method in self._methods(kinds, number, which):
                 mine = [n for n in open_ if self.places[n].part.kind in METHODS[method]]
                 if self.only or method in ("ctl", "ltl"):
-                    mine = mine[which::2]
+                    mine = mine[(which + number) % 2 :: 2]  # the lanes have different orders
                 if mine:
                     tasks.append((method, mine))
             if tasks:

@@ -81,6 +81,7 @@ class Temporal:
         self._constants: dict[Formula, bool] = {}
         self._values: dict[Formula, bool] = {}
         self._initial: dict[Formula, bool] = {}
+        self._is_home = False
         self.formula = formula
         self.wanted: tuple[Wanted, ...] = ()
         self._simplify()
@@ -116,10 +117,16 @@ class Temporal:
                 self._constants[rewriting.negation(asked.condition)] = True
         self._simplify()
 
+    def learn_home(self) -> None:
+        """The initial marking can be reached from all others (home.py): EF p and AG p have the same value in all."""
+        if self.kind == "ctl" and not self._is_home:
+            self._is_home = True
+            self._simplify()
+
     def _simplify(self) -> None:
         while True:
             before = self.formula
-            f = self._rewritten(self._constant(before))
+            f = self._rewritten(self._constant(self._at_home(before)))
             self.formula = f = self._put_in(rewriting.initially(f, self._holds))
             if f == before:
                 break
@@ -128,6 +135,19 @@ class Temporal:
     def _rewritten(self, f: Formula) -> Formula:
         rewrite = rewriting.branching if self.kind == "ctl" else rewriting.linear
         return rewrite(f, self._constants.get)
+
+    def _at_home(self, f: Formula) -> Formula:
+        """With the initial marking as a home marking: EF p and AG p, wherever they stand, by their values there."""
+        if not self._is_home or is_plain(f):
+            return f
+        assert isinstance(f, Op)
+        made = Op(f.operator, tuple(map(self._at_home, f.parts)))
+        if not _is_of_home(made):
+            return made
+        now = rewriting.initially(self._rewritten(made), self._holds)
+        if now in self._values:
+            return Truth(self._values[now])
+        return now if isinstance(now, Truth) else made
 
     def _constant(self, f: Formula) -> Formula:
         """The formula with true or false for parts that are the same everywhere, by what they imply or what does."""
@@ -191,6 +211,10 @@ class Temporal:
             return
         asked = [_question(node) for node in nodes]
         yield from asked
+        if self._is_home:
+            for part in dict.fromkeys(_of_home(self.formula)):
+                if part not in nodes:
+                    yield _side(part) if is_nested(part) else _question(part)
         of_paths = [n for n, w in zip(nodes, asked, strict=True) if isinstance(w, Whole)]
         found = dict.fromkeys(leaf for n in of_paths for leaf in rewriting.leaves(n))
         sides: list[Wanted] = [
@@ -216,6 +240,23 @@ class Temporal:
                     yield Reach(somewhere, is_side=True)
         for part in f.parts:
             yield from self._bounds(part)
+
+
+def _is_of_home(f: Formula) -> bool:
+    """Whether a formula has the same value in all markings if each of them leads to every other one."""
+    match f:
+        case Op("E", (Op("F", _),)) | Op("A", (Op("G", _),)):
+            return True
+    return False
+
+
+def _of_home(f: Formula) -> Iterator[Formula]:
+    """Those of its parts that are so."""
+    if isinstance(f, Op) and not is_plain(f):
+        for part in f.parts:
+            yield from _of_home(part)
+        if _is_of_home(f):
+            yield f
 
 
 def _question(f: Formula) -> Wanted:
