@@ -155,6 +155,7 @@ def _verified(said: Json) -> tuple[str, list[Finding]]:
     ]
     found += [_answer(c["check"], c, c["says"]) for c in said.get("controller") or ()]
     found += [_answer(m["check"], m, m["says"]) for m in said.get("medium") or ()]
+    found += [Finding("note", NOTED, x) for x in said.get("notes") or ()]
     found += _cycles(durations) if durations else []
     whole = "all" if said["complete"] else f"a part ({said['why']}): {said['nodes']:,} of its"
     nodes = f" {said['nodes']:,}" if said["complete"] else ""
