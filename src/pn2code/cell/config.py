@@ -15,6 +15,7 @@ from pn2code.cell.toml_file import Locator
 from pn2code.cell_file.logic import LED, PRIMITIVE
 from pn2code.cell_file.logic import CommandName as CommandName
 from pn2code.diagnostics import Origin
+from pn2code.diagnostics.accepted import Rule
 from pn2code.robot.commands import Handling
 
 COMMANDS = PRIMITIVE["command"].words
@@ -193,6 +194,7 @@ class CellConfig:
         storage: colour set -> storage ("float32").
         values: val of the net -> CPN ML text that replaces it.
         capacity: place -> most tokens (declared bounds).
+        accepted: warnings that are known, with the reason.
         raw: the tables as they are in the file.
         locator: where they are in it.
     """
@@ -210,6 +212,7 @@ class CellConfig:
     devices: tuple[RobotConfig, ...]
     sensors: tuple[SensorConfig, ...]
     report: ReportConfig
+    accepted: tuple[Rule, ...]
     geometry: dict[str, Any]
     layouts: dict[str, str]
     layout: str

@@ -468,6 +468,25 @@ REPORT = Section(
         ),
     )
 )
+ACCEPT = Section(
+    (
+        Key(
+            "warning",
+            "text",
+            "The code of the warning, as it stands in brackets behind the word.",
+            "the code of a warning",
+            required=True,
+        ),
+        Key(
+            "elements",
+            "texts",
+            "What the warning is about: all elements that it and its notes name, as `PAGE'NAME` or by name alone "
+            "(`check --json` lists them). Without the key: one about no element of the net.",
+            "a list of elements of the net",
+        ),
+        Key("reason", "text", "Why it is accepted; `report` prints it.", "a text", required=True),
+    )
+)
 PROPERTY = Section(
     (
         Key("name", "text", "How it is called, once in a file.", "a text", required=True),

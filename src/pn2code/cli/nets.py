@@ -52,6 +52,7 @@ def open_net(
     found = [i for i in d.sorted() if i.severity is Severity.WARNING]
     urgent = [i for i in found if i.code.startswith("unsupported-")]
     if warnings is not None:
+        warnings.rules = d.rules
         warnings.items += [i for i in found if i not in urgent]
     else:
         urgent += [i for i in found if i.code == INPUT_MISSING]

@@ -91,8 +91,8 @@ def full(said: Said) -> str:
     with suppress(TimeIsOverError), said.deadline.enforced():
         for a in said.answers:
             if a.evidence is not None:
-                is_deadlock, run = a.about.kind == "deadlock", a.evidence
-                end = [] if run.loop is not None else _end(said, run.trace, is_deadlock)
+                is_deadlock, e = a.about.kind == "deadlock", a.evidence
+                end = [] if e.loop is not None else _end(said, e.trace, is_deadlock)
                 parts.append("\n".join([told(net, said.storage, a, SHOWN_STEPS), *end]))
         if said.control is not None:
             texts = control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)

@@ -106,7 +106,8 @@ def _checked(said: Json) -> tuple[str, list[Finding]]:
         Finding(
             f"{d.get('page') or 'the net'}{': ' + d['element'] if d.get('element') else ''}",
             {"error": NO}.get(d["severity"], NOTED),
-            f"{d['severity']} {d['code']}: {d['message']}",
+            f"{d['severity']} {d['code']}: {d['message']}"
+            + (f" (accepted: {d['accepted']})" if d.get("accepted") else ""),
         )
         for d in said["diagnostics"]
     ]
