@@ -172,6 +172,7 @@ class ReportConfig:
         occurrences: label -> transition that is counted: its name, or as much of its path as wanted.
         warn_condition: condition numbers above this are reported as close to a singularity.
         failed: final places that mean that the cell has failed (each with where it stands).
+        conditions: on the marking at the end, that mean so: text, and where it stands.
     """
 
     rows: tuple[str, ...] = ()
@@ -180,6 +181,7 @@ class ReportConfig:
     warn_condition: float = 50.0
     failed: tuple[str, ...] = ()
     failed_origins: tuple[Origin, ...] = ()
+    conditions: tuple[tuple[str, Origin], ...] = ()
 
 
 @frozen

@@ -709,7 +709,8 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 f"`occurrences.{label}` is `{transition}`, but a transition is expected",
                 r.at("report", "occurrences", label),
             )
-    failed = r.texts(table, at, REPORT["failed"])
+    said = r.texts(table, at, REPORT["failed"])
+    failed = [(name, origin) for name, origin in said if not name.lstrip().startswith("{")]
     return ReportConfig(
         rows,
         tuple((str(k), str(v)) for k, v in count.items()),
@@ -717,4 +718,5 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
         r.number(table, at, REPORT["warn_condition"]),
         tuple(name for name, _ in failed),
         tuple(origin for _, origin in failed),
+        tuple(x for x in said if x not in failed),
     )

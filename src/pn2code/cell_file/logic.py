@@ -454,8 +454,9 @@ REPORT = Section(
             "failed",
             "texts",
             "Places of `final` that mean that the cell has failed, though the run has come to its end: such an end is "
-            "red on pages and on the screen, and a *no* in `report`.",
-            "a list of places",
+            "red on pages and on the screen, and a *no* in `report`. An entry that begins with `{` is a condition on "
+            'the marking at the end, as in properties: `"{ Mark.Supervisor\'Result 1 = [scrap] }"`.',
+            "a list of places and conditions",
         ),
         Key(
             "warn_condition",

@@ -247,7 +247,9 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     ended = said["verdict"]
     places = ", ".join(said.get("final") or ())
     is_good = ended == "finished" and not said.get("failed")
-    text = " ".join(x for x in (ended, places and f"in {places}", said["reason"]) if x)
+    others = [x for x in said.get("failed") or () if x not in (said.get("final") or ())]
+    why = f"(a failure: {'; '.join(others)})" if others else ""
+    text = " ".join(x for x in (ended, places and f"in {places}", why, said["reason"]) if x)
     found = [Finding("end", YES if is_good else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."

@@ -161,7 +161,11 @@ def examine_cell(
 
 
 def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
-    """Whether what is asked about the net can be understood; it is not answered."""
+    """Whether what is asked about the net, and of the end of a run, can be understood; it is not answered."""
+    if result.flat is not None and config is not None and config.report.conditions:
+        from pn2code.properties.failing import Failing
+
+        Failing.of(config, result.flat, result.typed.elaborator if result.typed else None, d)
     beside = net.with_suffix(".properties.toml").is_file()
     if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
         return
