@@ -12,7 +12,7 @@ import pytest
 
 from helpers import netbuilder
 from helpers.shown import PAIR, opened
-from pn2code.base import how_far, progress_line
+from pn2code.base import how_far
 from pn2code.cli import contest, main
 from pn2code.structure import analyse
 from pn2code.structure.analysis import STAGES
@@ -48,8 +48,7 @@ def test_a_contest_says_how_many_answers_there_are(
 ) -> None:
     terminal = Terminal()
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr(progress_line, "SHORT_S", 0.001)
-    monkeypatch.setattr(contest, "SHORT_S", 0.001)
+    monkeypatch.setattr(contest, "SILENCE_S", 0.001)
     asking: Any = Asked()
 
     def lines() -> Iterator[str]:

@@ -7,7 +7,7 @@ with Line(plain=True, first="reading the net ...") as line:
 with told("reading the net") as line:               # what may be over at once, and says nothing by itself
     line.turn_to("translating the net")
 
-Loops deep inside say how far they are (`how_far.counted`). Where nothing is said for two seconds, the line says for how
+Loops deep inside say how far they are (`how_far.counted`). Where nothing is said for a second, the line says for how
 long, so that nothing looks frozen. It is the only one that counts seconds.
 """
 
@@ -27,10 +27,8 @@ from pn2code.base.how_far import listening
 
 PLAIN_PERIOD_S = 10.0
 """In a file or a pipe a line stays: one in ten seconds shows that the work goes on, and is not too much to read."""
-SILENCE_S = 2.0
+SILENCE_S = 1.0
 """After so long without a word the seconds are counted."""
-SHORT_S = 1.0
-"""What is over within this time need not be mentioned."""
 
 _WRITING = threading.RLock()
 """Held while a line is written. A process that is forked must not find the stream in the hands of a thread that it
@@ -107,11 +105,11 @@ class Line:
 
     def _count(self) -> None:
         """Shows how long nothing has been said, as long as the line is there."""
-        while not self._over.wait(min(self._silence, SHORT_S) / 2):
+        while not self._over.wait(self._silence / 2):
             with _WRITING:
                 now = self._clock()
                 lasted = now - self._said
-                if self._begun is not None and now - self._begun >= min(self._silence, SHORT_S):
+                if self._begun is not None and now - self._begun >= self._silence:
                     self._begun, self._written = None, True
                     self._show(self._shown_as(lasted))
                 elif self._written and self._text and lasted >= self._silence:
@@ -120,7 +118,7 @@ class Line:
     def _shown_as(self, lasted: float) -> str:
         """The last word, and how long ago it was if that is long."""
         more = self._suffix() if self._suffix is not None else ""
-        if lasted < min(self._silence, SHORT_S):
+        if lasted < self._silence:
             return f"{self._text}{more}"
         seconds = f"{':' if more else ' ...'} {lasted:.0f} s"
         return f"{self._text.removesuffix(' ...')}{seconds}{more}"
@@ -197,6 +195,6 @@ def told(what: str) -> Iterator[Line]:
 
     Nothing else is to be printed meanwhile.
     """
-    with Line(first="", silence=SHORT_S) as line:
+    with Line(first="") as line:
         line.turn_to(what)
         yield line

@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
-from pn2code.base.progress_line import SHORT_S, Line
+from pn2code.base.progress_line import SILENCE_S, Line
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
 from pn2code.contest.asking import UNKNOWN, Asking
@@ -110,7 +110,7 @@ def _print(lines: Iterable[str], asking: Asking) -> None:
         return f"   {count} answered, {rate:,.0f}/min   {len(asking.unknown)} open   {left}"
 
     count = 0
-    with Line(first="", silence=SHORT_S) as line:
+    with Line(first="", silence=SILENCE_S) as line:
         line.turn_to(str(asking.examination), so_far, began)
         for text in lines:
             count += 1
