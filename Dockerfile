@@ -12,7 +12,7 @@ COPY cnative cnative
 COPY templates templates
 COPY examples examples
 RUN python3 -m venv /opt/pn2code \
-    && /opt/pn2code/bin/pip install --no-cache-dir '.[cell]'
+    && /opt/pn2code/bin/pip install --no-cache-dir '.[cell,hulls]'
 
 FROM debian:12-slim
 RUN apt-get update \

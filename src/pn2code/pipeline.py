@@ -34,6 +34,7 @@ from pn2code.lowering.nets import net as lower_net
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
+from pn2code.properties.failing import Failing
 from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.verify.controller import kept_proofs
@@ -62,6 +63,7 @@ class Generated:
         place_capacities: how many tokens each place can hold, and why.
         arena: bytes that the supervisor has for lists, strings and the moves of a firing.
         is_checked: whether the supervisor was checked, with the input files that were there.
+        failing: conditions that mean that the cell has failed when it has come to its end.
     """
 
     files: tuple[OutputFile, ...]
@@ -71,6 +73,7 @@ class Generated:
     place_capacities: tuple[PlaceCapacity, ...]
     arena: int
     is_checked: bool
+    failing: Failing = Failing()
 
 
 def generate(
@@ -111,13 +114,15 @@ def generate(
     net_path, config = found
     replaced = {**(config.values if config else {}), **(values or {})}
 
-    net = front.load(net_path, d, replaced, int_bits=int_bits, compute=compute)
+    examined = front.examine(net_path, d, replaced, int_bits=int_bits, compute=compute)
+    net, typed = examined.flat, examined.typed
     _refuse_unsupported(d, net)
     if net is None or d.has_errors:
         return None
     partition = divided(net, config, d, kept=kept)
     if partition is not None and examine is not None:
         examine(net, config, d)
+    failing = Failing.of(config, net, typed.elaborator if typed is not None else None, d)
     if partition is None or d.has_errors:
         return None
 
@@ -186,6 +191,7 @@ def generate(
         place_capacities=proofs.place_capacities,
         arena=arena.bytes,
         is_checked=checked,
+        failing=failing,
     )
 
 

@@ -7,6 +7,7 @@ import { byId, el, shorten } from "./dom.js";
 import { NetView } from "./netview.js";
 import { Pacing } from "./pacing.js";
 import { Timeline } from "./timeline.js";
+import { chipOf } from "./verdict.js";
 
 /** @typedef {import("./replaypage.js").ReplayPage} ReplayPage */
 
@@ -73,7 +74,7 @@ export class Beside {
     this.show(innerHeight < ROOM ? "cell" : "both");
   }
 
-  /** The headings say which run is which. */
+  /** The headings say which run is which, and how each has ended. */
   called() {
     for (const [suffix, name, mark] of [["", this.names[0], "A"], ["-2", this.names[1], "B"]]) {
       for (const kind of ["net", "cell"]) {
@@ -81,6 +82,11 @@ export class Beside {
           " ", el("span", { class: `which ${mark}`, title: name, text: mark }), el("span", { class: "called", text: ` ${shorten(name, 28)}` }));
       }
     }
+    const ends = [this.page.run, this.run].flatMap((run, i) => {
+      const chip = chipOf(run);
+      return chip ? [el("span", { class: `which ${"AB"[i]}`, title: this.names[i], text: "AB"[i] }), " ", chip, " "] : [];
+    });
+    byId("verdict").replaceChildren(...ends);
   }
 
   banner() {

@@ -27,7 +27,9 @@ export class EnabledList {
     this.more = el("li", { class: "note", hidden: true });
     this.rows = el("ul", { class: "plain offers", "aria-label": "Enabled transitions" }, this.more);
     this.chosen = el("section", { class: "chosen", hidden: true, "aria-label": "Bindings" });
-    host.append(this.chosen, this.what, this.rows);
+    /** Transitions that raise an exception when they are asked whether they are enabled. */
+    this.raises = el("ul", { class: "plain raising", hidden: true, "aria-label": "Transitions that raise an exception" });
+    host.append(this.chosen, this.what, this.rows, this.raises);
     this.asked = 0;
     /** Rows that were made, by transition. @type {Map<number, any>} */
     this.made = new Map();
@@ -44,6 +46,10 @@ export class EnabledList {
     if (state.error) this.what.textContent = `The net cannot go on: ${state.error.message}.`;
     else if (state.later !== null && state.later !== undefined) this.what.textContent = `Nothing is enabled before time ${state.later}. A step moves the clock on.`;
     else if (!enabled.length) this.what.textContent = "The marking is dead: nothing is enabled, now or later.";
+    this.raises.hidden = !state.raising.length;
+    this.raises.replaceChildren(...state.raising.map((/** @type {any} */ r) => el("li", {},
+      el("button", { class: "link", text: net.transitions[r.transition].short.replace(/\s+/g, " "), title: "Show it", onclick: () => this.actions.show(r.transition) }),
+      el("span", { class: "bad", text: r.message }))));
     const now = `${shown} ${enabled.length}`;
     if (now !== this.shown) {
       this.shown = now;

@@ -6,8 +6,9 @@ import { byId, el } from "./dom.js";
 import { Hand } from "./hand.js";
 import { LiveClock } from "./liveclock.js";
 import { LiveLink, addTo } from "./livelink.js";
-import { ReplayPage, hasFailed, probes } from "./replaypage.js";
+import { ReplayPage, probes } from "./replaypage.js";
 import { Sides } from "./sides.js";
+import { hasFailed } from "./verdict.js";
 
 const WINDOW_S = 30;
 const WATCH_MS = 1000;

@@ -133,7 +133,7 @@ class Page {
     this.game?.update(state);
     for (const text of state.notices) this.say(text, "note");
     if (isWhole) this.found();
-    if (state.error) this.verdict("bad", "error");
+    if (state.error || state.raising.length) this.verdict("bad", "error");
     else if (this.position.enabled.length) this.verdict("", "");
     else if (state.later !== null) this.verdict("open", `waits until ${state.later}`);
     else this.verdict("bad", "dead");

@@ -95,6 +95,7 @@ export class PlayNet extends NetView {
       if (made.enabled.has(id) !== here.has(id)) this.turn(made.elements.get(id)?.[0], here.has(id));
     }
     made.enabled = here;
+    this.raising(made);
     for (const node of made.root.querySelectorAll(".breakpoint")) if (!stopping.delete(node.parentNode.getAttribute("data-id"))) node.remove();
     for (const id of stopping) this.mark_(id, made.elements.get(id)?.[0]);
     this.names.forEach((name, i) => {
@@ -102,6 +103,35 @@ export class PlayNet extends NetView {
       this.choice.options[i].text = pages.has(i) ? `${name} ●` : name;
     });
     this.marked = pages;
+  }
+
+  /**
+   * Transitions that raise an exception have a red border, and say which one it is.
+   * @param {any} made
+   */
+  raising(made) {
+    const raising = this.position.raising();
+    const here = new Map([...raising].filter(([t]) => this.net.transitions[t].instance === this.current).map(([t, said]) => [this.net.transitions[t].id, said]));
+    for (const node of made.root.querySelectorAll(".raises")) {
+      if (here.has(node.getAttribute("data-id"))) continue;
+      node.classList.remove("raises");
+      node.querySelector(":scope > title.raised")?.remove();
+      this.turn(node, made.enabled.has(node.getAttribute("data-id")));
+    }
+    for (const [id, said] of here) {
+      const node = made.elements.get(id)?.[0];
+      if (!node) continue;
+      node.classList.add("raises");
+      let title = node.querySelector(":scope > title.raised");
+      if (!title) {
+        title = document.createElementNS("http://www.w3.org/2000/svg", "title");
+        title.setAttribute("class", "raised");
+        node.prepend(title);
+      }
+      title.textContent = said;
+      const t = this.transitionOf?.[this.current].get(id);
+      if (t !== undefined) node.setAttribute("aria-label", `transition ${this.net.transitions[t].short}, raises an exception: ${said}`);
+    }
   }
 
   /**

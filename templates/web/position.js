@@ -28,7 +28,7 @@ export class Position {
     /** The last entries by number. @type {Map<number, any>} */
     this.entries = new Map();
     /** @type {any} */
-    this.state = { position: 0, length: 0, forgotten: 0, steps: 0, time: "0", enabled: [], later: null, error: null, last: null };
+    this.state = { position: 0, length: 0, forgotten: 0, steps: 0, time: "0", enabled: [], later: null, error: null, raising: [], last: null };
   }
 
   /** @param {any} state what has changed */
@@ -47,6 +47,11 @@ export class Position {
       if (number >= state.position || number < state.position - KEPT) this.entries.delete(number);
     }
     if (state.last) this.entries.set(state.last.number, state.last);
+  }
+
+  /** What transitions raise that cannot be asked whether they are enabled. @returns {Map<number, string>} */
+  raising() {
+    return new Map(this.state.raising.map((/** @type {any} */ r) => [r.transition, r.message]));
   }
 
   seek() {}

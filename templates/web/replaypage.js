@@ -15,24 +15,8 @@ import { NetView } from "./netview.js";
 import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
+import { chipOf } from "./verdict.js";
 import { Watch } from "./watch.js";
-
-/** How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
-const GOOD = new Set(["finished", "steps", "cut"]);
-/** @type {Record<string, Record<string, string>>} */
-const WORDS = {
-  seconds: { steps: "more would be possible", cut: "shown in part" },
-  steps: {
-    finished: "nothing more is possible", steps: "more would be possible", cut: "shown in part", until: "more would be possible later",
-    breakpoint: "ended at a breakpoint", evidence: "ends with what it shows", replay: "ended by its trace",
-  },
-};
-
-/**
- * Whether a run that has come to its end has done so where that means failure.
- * @param {any} verdict
- */
-export const hasFailed = (verdict) => Boolean(verdict.failed?.length);
 
 /** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
 const PANES_MS = 200;
@@ -82,17 +66,9 @@ export class ReplayPage {
   }
 
   head() {
-    const { verdict, title, course } = this.run;
-    byId("title").textContent = title;
-    const word = course.refused ? "not possible" : loopOf(course) === null ? WORDS[this.run.clock]?.[verdict.word] ?? verdict.word
-      : `repeated for ever from step ${course.loop + 1} on`;
-    if (!word) return;
-    const isBad = course.refused || verdict.word === "error" || hasFailed(verdict) || (this.run.clock === "seconds" && !GOOD.has(verdict.word));
-    const kind = isBad ? "bad" : this.run.clock === "seconds" ? "good" : "plain";
-    // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
-    const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-    const text = places ? `${word} in ${places}` : word;
-    byId("verdict").replaceChildren(el("span", { class: `chip ${kind}`, text, title: verdict.reason }));
+    byId("title").textContent = this.run.title;
+    const chip = chipOf(this.run);
+    if (chip) byId("verdict").replaceChildren(chip);
   }
 
   /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */

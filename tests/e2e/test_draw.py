@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import html
+import re
+from collections import Counter
 from pathlib import Path
 
 import imageio.v2 as imageio
@@ -200,6 +203,23 @@ def test_png(net: Path, tmp_path: Path) -> None:
     assert (255, 255, 255) in colours and len(colours) > 10
     green = [c for c in colours if c[1] > c[0] + 40 and c[1] > c[2] + 40]
     assert green, "the number of tokens"
+
+
+def test_each_text_is_once_in_a_pdf(net: Path, tmp_path: Path) -> None:
+    """The white edge of a text is a shape: it is neither read nor found; equal ones are kept once."""
+    assert draw(net, "-o", tmp_path / "net.pdf") == 0
+    assert draw(net, "-o", tmp_path / "net.svg", "--page", "Top") == 0
+    svg = (tmp_path / "net.svg").read_text(encoding="utf-8")
+    top = pypdf.PdfReader(tmp_path / "net.pdf").pages[0]
+    contents = top.get_contents()
+    assert contents is not None
+    edges = svg.count('paint-order="stroke"')
+    assert edges > 3
+    assert contents.get_data().count(b" Do\n") == edges
+    assert b"1 Tr\n" not in contents.get_data()
+    written = [html.unescape(x) for x in re.findall(r"<tspan [^>]*>([^<]+)</tspan>", svg)]
+    letters = Counter("".join("".join(written).split()))
+    assert Counter("".join(top.extract_text().split())) == letters
 
 
 def test_pdf(net: Path, tmp_path: Path) -> None:

@@ -356,3 +356,47 @@ def test_a_lost_server_is_told(chromium: Any, tmp_path: Path) -> None:
         visit(browser, server)
         assert server.end() == 0
         browser.page.get_by_text("The connection to pn2code is lost").wait_for()
+
+
+RAISES = """
+net Raises
+  standard
+  colset L = list INT;
+  var n : INT;
+  var l : L;
+  page Top
+    place A : INT = 1`1 ++ 1`2
+    place B : L = 1`[]
+    place C : INT
+    trans Good
+      in A : n
+      out C : n
+    trans Bad guard [hd l > 0]
+      in B : l
+      out C : 0
+"""
+
+
+def test_a_transition_that_raises_an_exception_says_so_and_the_others_go_on(
+    chromium: Any, tmp_path: Path
+) -> None:
+    net = netbuilder.write(RAISES, tmp_path / "raises.cpn")
+    with served(net) as server, opened(chromium) as browser:
+        visit(browser, server)
+        assert browser.page.locator(".sheet .enabled").count() == 1
+        node = browser.page.locator(".sheet .raises")
+        assert node.count() == 1
+        assert "raises an exception: " in str(node.get_attribute("aria-label"))
+        assert "raised the exception `Empty`" in node.locator("title").first.text_content()
+        browser.page.get_by_role("tab", name="Enabled").click()
+        row = browser.page.get_by_role("list", name="Transitions that raise an exception")
+        assert row.inner_text().startswith("Bad")
+        assert "`Top.Bad` raised the exception `Empty`" in row.inner_text()
+        transition(browser, "Good, enabled").click()
+        at(browser, 1)
+        assert browser.page.locator("#verdict").inner_text() == "error"
+        assert complaints(browser) == []
+        node.click()
+        browser.page.locator("#said").get_by_text("raised the exception `Empty`").wait_for()
+        assert position(browser) == 1
+        assert browser.errors == []

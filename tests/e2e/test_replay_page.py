@@ -714,6 +714,22 @@ def test_two_runs_beside_each_other(tmp_path: Path, chromium: Any) -> None:
         assert browser.errors == []
 
 
+def test_how_both_runs_have_ended_is_said(tmp_path: Path, chromium: Any) -> None:
+    run = described(tmp_path, steps=6)
+    first = {**run, "verdict": {"word": "finished", "reason": "", "final": []}}
+    second = {**run, "verdict": {"word": "error", "reason": "Subscript", "final": []}}
+    with opened(chromium, viewport={"width": 1400, "height": 950}) as browser:
+        browser.open(written(tmp_path, first, second))
+        said = browser.page.locator("#verdict")
+        assert said.inner_text().split() == ["A", "nothing", "more", "is", "possible", "B", "error"]
+        kinds = "() => [...document.querySelectorAll('#verdict .chip')].map((c) => c.className)"
+        assert browser.ask(kinds) == ["chip plain", "chip bad"]
+        assert complaints(browser) == []
+        browser.open(written(tmp_path, first))
+        assert said.inner_text() == "nothing more is possible"
+        assert browser.errors == []
+
+
 def test_tools_in_use_and_clamps_are_told(tmp_path: Path, chromium: Any) -> None:
     run = with_arm(described(tmp_path, steps=6), joints=lambda k: 0.0)
     unit = run["cell"]["robots"][0]["base"]

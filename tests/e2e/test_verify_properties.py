@@ -154,9 +154,7 @@ def test_time_that_never_ends(tmp_path: Path) -> None:
     ]
     trace = said["properties"][1]["evidence"]["trace"]
     done = pn2code("replay", trace, net)
-    assert done.returncode == 0 and done.stdout.endswith("ended: steps, until time 5\n"), (
-        done.stdout
-    )
+    assert done.returncode == 0 and done.stdout.endswith("ended: steps, at time 5\n"), done.stdout
     *lines, _ = Path(trace).read_text().splitlines()
     Path(trace).write_text("\n".join(lines))
     assert "its last line is missing" in pn2code("replay", trace, net).stdout

@@ -332,6 +332,10 @@ places.here.x = 0.9
 frames.corner.x = 0.2
 devices.belt.base.y = -0.2
 
+[[accept]]
+warning = "robot-choice"
+elements = ["Robot1'Put", "Robot1'Take"]
+reason = "the script prefers Put"
 [[property]]
 name = "ends"
 says = "the cell always comes to an end"

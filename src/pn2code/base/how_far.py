@@ -3,12 +3,20 @@
 more = HowFar(line.say, "sweeping pairs", total=len(pairs))
 for pair in pairs:
     more()      # "sweeping pairs: 1,200 of 9,870, 310 a second, about 28 s left"
+
+with listening(line.say):               # whoever shows how a command goes on
+    ...
+for t in counted(transitions, "translating transitions"):    # in a loop deep inside, which knows nothing of a line
+    ...
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TypeVar
 
 PERIOD_S = 0.5
 """It is said no more often than that."""
@@ -16,8 +24,24 @@ PERIOD_S = 0.5
 Say = Callable[[str], None]
 
 
+T = TypeVar("T")
+
+
 def silent(_text: str) -> None:
     """Nobody listens."""
+
+
+_LISTENER: ContextVar[Say] = ContextVar("_LISTENER", default=silent)
+
+
+@contextmanager
+def listening(say: Say) -> Iterator[None]:
+    """Loops in this block, and in all that it calls, say how far they are."""
+    before = _LISTENER.set(say)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(before)
 
 
 class HowFar:
@@ -63,3 +87,16 @@ class HowFar:
 
 def _rate(a_second: float) -> str:
     return f"{a_second:,.0f} a second" if a_second >= 10 else f"{a_second:.1f} a second"
+
+
+def counting(what: str, *, noun: str = "", total: int = 0) -> HowFar:
+    """For a loop whose listener is that of the command."""
+    return HowFar(_LISTENER.get(), what, noun=noun, total=total)
+
+
+def counted(items: Collection[T], what: str) -> Iterator[T]:
+    """The items; whoever listens is told how many of them are done."""
+    more = counting(what, total=len(items))
+    for item in items:
+        yield item
+        more()

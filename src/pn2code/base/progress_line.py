@@ -4,7 +4,11 @@ with Line(plain=True, first="reading the net ...") as line:
     line.stage("comparing the supervisor ...")      # a new part of the work
     line.say("12,000 states")                       # how far it is
 
-Where nothing is said for two seconds, the line says for how long, so that nothing looks frozen.
+with told("reading the net") as line:               # what may be over at once, and says nothing by itself
+    line.turn_to("translating the net")
+
+Loops deep inside say how far they are (`how_far.counted`). Where nothing is said for a second, the line says for how
+long, so that nothing looks frozen. It is the only one that counts seconds.
 """
 
 from __future__ import annotations
@@ -14,13 +18,16 @@ import shutil
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import IO, Self
 
+from pn2code.base.how_far import listening
+
 PLAIN_PERIOD_S = 10.0
 """In a file or a pipe a line stays: one in ten seconds shows that the work goes on, and is not too much to read."""
-SILENCE_S = 2.0
+SILENCE_S = 1.0
 """After so long without a word the seconds are counted."""
 
 _WRITING = threading.RLock()
@@ -69,11 +76,16 @@ class Line:
         self._written = False
         self._text, self._said = "", 0.0
         self._silence = silence
+        self._listening = listening(self.say)
+        self._begun: float | None = None
+        self._suffix: Callable[[], str] | None = None
         self._over = threading.Event()
         self._counting: threading.Thread | None = None
 
     def __enter__(self) -> Self:
-        self.stage(self._first)
+        self._listening.__enter__()
+        if self._first:
+            self.stage(self._first)
         if self._shown:
             self._counting = threading.Thread(target=self._count, daemon=True)
             self._counting.start()
@@ -85,6 +97,7 @@ class Line:
         value: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._listening.__exit__(kind, value, trace)
         self._over.set()
         if self._counting is not None:
             self._counting.join()
@@ -94,9 +107,40 @@ class Line:
         """Shows how long nothing has been said, as long as the line is there."""
         while not self._over.wait(self._silence / 2):
             with _WRITING:
-                lasted = self._clock() - self._said
-                if self._written and self._text and lasted >= self._silence:
-                    self._show(f"{self._text.removesuffix(' ...')} ... {lasted:.0f} s")
+                now = self._clock()
+                lasted = now - self._said
+                if self._begun is not None and now - self._begun >= self._silence:
+                    self._begun, self._written = None, True
+                    self._show(self._shown_as(lasted))
+                elif self._written and self._text and lasted >= self._silence:
+                    self._show(self._shown_as(lasted))
+
+    def _shown_as(self, lasted: float) -> str:
+        """The last word, and how long ago it was if that is long."""
+        more = self._suffix() if self._suffix is not None else ""
+        if lasted < self._silence:
+            return f"{self._text}{more}"
+        seconds = f"{':' if more else ' ...'} {lasted:.0f} s"
+        return f"{self._text.removesuffix(' ...')}{seconds}{more}"
+
+    def turn_to(
+        self, text: str, more: Callable[[], str] | None = None, since: float | None = None
+    ) -> None:
+        """Something else takes the time from now on; it is only shown where all that was so begun is not over soon.
+
+        Args:
+            text: what.
+            more: makes what stands behind the seconds, whenever they are shown.
+            since: the moment from which they are counted; None: now.
+        """
+        with _WRITING:
+            now = self._clock()
+            self._text, self._suffix = text, more
+            self._said = now if since is None else since
+            if self._shown and self._written:
+                self._show(self._shown_as(now - self._said))
+            elif self._begun is None:
+                self._begun = now
 
     def stage(self, text: str) -> None:
         """Shows a text that begins a new part of the work: it is a line of its own where lines stay."""
@@ -112,6 +156,7 @@ class Line:
         if self._shown:
             with _WRITING:
                 self._text, self._said, self._written = text, self._clock(), True
+                self._begun = self._suffix = None
                 self._show(text)
 
     def _show(self, text: str) -> None:
@@ -136,7 +181,20 @@ class Line:
     def clear(self) -> None:
         """Makes room for something that stays."""
         with _WRITING:
+            self._begun = None
             if self._written:
                 self._stream.write("\r\x1b[K")
                 self._stream.flush()
                 self._written = False
+
+
+@contextmanager
+def told(what: str) -> Iterator[Line]:
+    """What may take long and says nothing by itself: a terminal shows from the second second on how long it takes, and
+    how far its loops are.
+
+    Nothing else is to be printed meanwhile.
+    """
+    with Line(first="") as line:
+        line.turn_to(what)
+        yield line

@@ -152,3 +152,9 @@ CELL_MISSING = register(
     "a file is missing",
     "The file or folder given on the command line does not exist.",
 )
+ACCEPT_UNNEEDED = register(
+    "accept-unneeded",
+    "cell.toml accepts a warning that there is not",
+    "An `[[accept]]` entry is about a warning that `check` gives, with exactly the elements that it names. The code or "
+    "a name is misspelt, or what was warned of has been mended: then remove the entry, lest it hide the next one.",
+)

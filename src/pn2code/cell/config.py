@@ -15,6 +15,7 @@ from pn2code.cell.toml_file import Locator
 from pn2code.cell_file.logic import LED, PRIMITIVE
 from pn2code.cell_file.logic import CommandName as CommandName
 from pn2code.diagnostics import Origin
+from pn2code.diagnostics.accepted import Rule
 from pn2code.robot.commands import Handling
 
 COMMANDS = PRIMITIVE["command"].words
@@ -171,6 +172,7 @@ class ReportConfig:
         occurrences: label -> transition that is counted: its name, or as much of its path as wanted.
         warn_condition: condition numbers above this are reported as close to a singularity.
         failed: final places that mean that the cell has failed (each with where it stands).
+        conditions: on the marking at the end, that mean so: text, and where it stands.
     """
 
     rows: tuple[str, ...] = ()
@@ -179,6 +181,7 @@ class ReportConfig:
     warn_condition: float = 50.0
     failed: tuple[str, ...] = ()
     failed_origins: tuple[Origin, ...] = ()
+    conditions: tuple[tuple[str, Origin], ...] = ()
 
 
 @frozen
@@ -193,6 +196,7 @@ class CellConfig:
         storage: colour set -> storage ("float32").
         values: val of the net -> CPN ML text that replaces it.
         capacity: place -> most tokens (declared bounds).
+        accepted: warnings that are known, with the reason.
         raw: the tables as they are in the file.
         locator: where they are in it.
     """
@@ -210,6 +214,7 @@ class CellConfig:
     devices: tuple[RobotConfig, ...]
     sensors: tuple[SensorConfig, ...]
     report: ReportConfig
+    accepted: tuple[Rule, ...]
     geometry: dict[str, Any]
     layouts: dict[str, str]
     layout: str

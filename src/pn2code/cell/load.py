@@ -40,6 +40,7 @@ from pn2code.cell_file.devices import DEVICE_PLACE
 from pn2code.cell_file.geometry import ROBOT
 from pn2code.cell_file.keys import Key
 from pn2code.cell_file.logic import (
+    ACCEPT,
     BOUND,
     CHANNEL,
     DEVICE,
@@ -55,6 +56,7 @@ from pn2code.cell_file.logic import (
 )
 from pn2code.cell_file.whole import FILE, LAYOUT, PLACED
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
+from pn2code.diagnostics.accepted import Rule
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import CHANGES, EFFECTS, Effect, Handling
 
@@ -85,6 +87,7 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
         return None
     data, locator = found
     config = _config(path, data, locator, d, layout)
+    d.rules = config.accepted
     check_files(config, d)
     return config if len(d.errors) == before else None
 
@@ -114,6 +117,7 @@ def _config(
         devices=tuple(_devices(r, data)),
         sensors=tuple(_sensors(r, data)),
         report=ReportConfig(),
+        accepted=tuple(_accepted(r, data)),
         geometry={
             "robots": {
                 name: {k: v for k, v in table.items() if k != "instance"}
@@ -328,6 +332,21 @@ def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
         file = r.file_name(table, at, INPUT["file"])
         _once(r, files, file, place, at, "inputs")
         yield InputConfig(place, file, r.at(*at, "place"))
+
+
+def _accepted(r: Tables, data: dict[str, Any]) -> Iterable[Rule]:
+    for i, table in enumerate(r.tables(data, "accept")):
+        at: KeyPath = ("accept", i)
+        r.keys(table, at, ACCEPT.names())
+        code, reason = (r.get(table, at, ACCEPT[key], "") for key in ("warning", "reason"))
+        names = tuple(name for name, _ in r.texts(table, at, ACCEPT["elements"]))
+        if "reason" in table and not reason.strip():
+            r.d.error(
+                codes.CELL_VALUE,
+                "an accepted warning needs a reason: what you have found when you looked at it",
+                r.at(*at, "reason"),
+            )
+        yield Rule(code, names, reason, r.at(*at, "warning"))
 
 
 def _once(
@@ -690,7 +709,8 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 f"`occurrences.{label}` is `{transition}`, but a transition is expected",
                 r.at("report", "occurrences", label),
             )
-    failed = r.texts(table, at, REPORT["failed"])
+    said = r.texts(table, at, REPORT["failed"])
+    failed = [(name, origin) for name, origin in said if not name.lstrip().startswith("{")]
     return ReportConfig(
         rows,
         tuple((str(k), str(v)) for k, v in count.items()),
@@ -698,4 +718,5 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
         r.number(table, at, REPORT["warn_condition"]),
         tuple(name for name, _ in failed),
         tuple(origin for _, origin in failed),
+        tuple(x for x in said if x not in failed),
     )

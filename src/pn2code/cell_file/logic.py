@@ -454,8 +454,9 @@ REPORT = Section(
             "failed",
             "texts",
             "Places of `final` that mean that the cell has failed, though the run has come to its end: such an end is "
-            "red on pages and on the screen, and a *no* in `report`.",
-            "a list of places",
+            "red on pages and on the screen, and a *no* in `report`. An entry that begins with `{` is a condition on "
+            'the marking at the end, as in properties: `"{ Mark.Supervisor\'Result 1 = [scrap] }"`.',
+            "a list of places and conditions",
         ),
         Key(
             "warn_condition",
@@ -466,6 +467,25 @@ REPORT = Section(
             low=0.0,
             above=True,
         ),
+    )
+)
+ACCEPT = Section(
+    (
+        Key(
+            "warning",
+            "text",
+            "The code of the warning, as it stands in brackets behind the word.",
+            "the code of a warning",
+            required=True,
+        ),
+        Key(
+            "elements",
+            "texts",
+            "What the warning is about: all elements that it and its notes name, as `PAGE'NAME` or by name alone "
+            "(`check --json` lists them). Without the key: one about no element of the net.",
+            "a list of elements of the net",
+        ),
+        Key("reason", "text", "Why it is accepted; `report` prints it.", "a text", required=True),
     )
 )
 PROPERTY = Section(

@@ -6,6 +6,7 @@ from pn2code.cell_file.devices import DEVICE_PLACE
 from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, TOOL, ZONE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
+    ACCEPT,
     BOUND,
     CHANNEL,
     DEVICE,
@@ -146,6 +147,12 @@ FILE = Section(
             "are the same in all.",
             inner=LAYOUT,
             entry="NAME",
+        ),
+        Key(
+            "accept",
+            "tables",
+            "A warning that somebody has looked at and accepts. See *Accepted warnings*.",
+            inner=ACCEPT,
         ),
         Key(
             "property",

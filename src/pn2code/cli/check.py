@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from pn2code.base.kept_answers import KeptAnswers
-from pn2code.base.ticking import told
+from pn2code.base.progress_line import told
 from pn2code.cell.channel_table import lines as channel_lines
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (

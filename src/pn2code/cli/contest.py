@@ -13,8 +13,7 @@ from typing import Annotated
 import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
-from pn2code.base.progress_line import Line
-from pn2code.base.ticking import Ticking
+from pn2code.base.progress_line import SILENCE_S, Line
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
 from pn2code.contest.asking import UNKNOWN, Asking
@@ -103,22 +102,21 @@ def _print(lines: Iterable[str], asking: Asking) -> None:
     """The answers as they come; meanwhile a terminal shows how many there are, how many a minute, and how long yet."""
     began = time.monotonic()
 
-    def tell(seconds: str) -> None:
+    def so_far() -> str:
         left = f"{max(asking.deadline.left or 0.0, 0.0):.0f} s left at most"
         if asking.unknown is None:
-            line.say(f"{seconds}   {left}")
-            return
+            return f"   {left}"
         rate = 60.0 * count / max(time.monotonic() - began, 1.0)
-        line.say(
-            f"{seconds}   {count} answered, {rate:,.0f}/min   {len(asking.unknown)} open   {left}"
-        )
+        return f"   {count} answered, {rate:,.0f}/min   {len(asking.unknown)} open   {left}"
 
     count = 0
-    with Line(first="") as line, Ticking(tell, str(asking.examination)):
+    with Line(first="", silence=SILENCE_S) as line:
+        line.turn_to(str(asking.examination), so_far, began)
         for text in lines:
             count += 1
             line.clear()
             typer.echo(text)
+            line.turn_to(str(asking.examination), so_far, began)
 
 
 def _tables(net: FlatNet, d: Diagnostics) -> Tables | None:

@@ -9,7 +9,7 @@ import typer
 
 from pn2code import pipeline
 from pn2code.base.kept_answers import KeptAnswers
-from pn2code.base.ticking import told
+from pn2code.base.progress_line import told
 from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -65,7 +65,7 @@ def generate(
     if output is not None and not check:
         _expect_writable(output)
     late = "the programs were generated, so nothing was written"
-    with in_time(max_seconds, net, late, form), told("reading the net") as ticking:
+    with in_time(max_seconds, net, late, form), told("reading the net") as line:
         result = pipeline.generate(
             net,
             d,
@@ -73,7 +73,7 @@ def generate(
             checked=not unchecked,
             inputs=inputs,
             kept=KeptAnswers.of_user(),
-            stage=ticking.turn_to,
+            stage=line.turn_to,
         )
     if result is None:
         stop(d, form)

@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from pn2code.base.deadline import CommandIsOverError, Deadline
-from pn2code.base.ticking import told
+from pn2code.base.progress_line import told
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cli.options import DEFAULT_INT_BITS, Exit, Format, print_diagnostics, stop
@@ -52,6 +52,7 @@ def open_net(
     found = [i for i in d.sorted() if i.severity is Severity.WARNING]
     urgent = [i for i in found if i.code.startswith("unsupported-")]
     if warnings is not None:
+        warnings.rules = d.rules
         warnings.items += [i for i in found if i not in urgent]
     else:
         urgent += [i for i in found if i.code == INPUT_MISSING]

@@ -246,6 +246,7 @@ def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -
     items = list(items)
     omitted = ""
     if form is Format.FULL:
+        items = [i for i in items if not i.is_accepted]
         wrong = {p for i in items if i.severity is Severity.ERROR for p in _pages(i)}
         items = [i for i in items if i.severity is not Severity.NOTE or wrong & _pages(i)]
         items, omitted = _first(list(_folded(items)))

@@ -158,6 +158,7 @@ def place(
     d = Diagnostics()
     late = "anything was found"
     with in_time(max_seconds, cell, late, form):
+        _expect_known(free, cell)
         opened = open_net(cell, values, form, warnings=d, inputs=inputs)
     deadline = Deadline.of_command(max_seconds)
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
@@ -191,6 +192,20 @@ def place(
     if d_run.has_errors:
         print_diagnostics(d_run.sorted(), form)
     raise typer.Exit(_code(found, record, d_run))
+
+
+def _expect_known(free: list[str], path: Path) -> None:
+    """Refuses a robot or key that there is not, before the net is read; of a cell that is wrong `open_net` tells."""
+    from pn2code.cell.load import load
+    from pn2code.geometry.placing.free import FreeError, expect_known
+
+    config = load(path, Diagnostics()) if path.is_dir() or path.suffix == ".toml" else None
+    if config is None:
+        return
+    try:
+        expect_known(free, [r.name for r in config.robots])
+    except FreeError as problem:
+        raise typer.BadParameter(str(problem), param_hint="--free") from None
 
 
 def _code(found: Placed, record: RunRecord | None, d: Diagnostics) -> int:

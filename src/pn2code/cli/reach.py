@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pn2code.base.os_reason import os_reason
-from pn2code.base.progress_line import Line
+from pn2code.base.progress_line import Line, told
 from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -82,7 +82,8 @@ def reach(
         stop(d, form)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        files = [_written(f, out) for f in found]
+        with told("drawing the maps"):
+            files = [_written(f, out) for f in found]
     except OSError as problem:
         raise typer.BadParameter(
             f"cannot write into `{out}`: {os_reason(problem)}", param_hint="--out"

@@ -32,6 +32,7 @@ from pn2code.semantics.game.report import places, time_text
 from pn2code.trace import replay as own
 from pn2code.trace.json_text import BadJson, parse_json
 from pn2code.trace.recording import NotARecording, Recording, recording
+from pn2code.trace.replay_end import UNTIL
 from pn2code.trace.replay_recording import follow
 from pn2code.verdict.opened import OpenNet
 
@@ -202,12 +203,17 @@ def _own(
         "line": result.line,
         "transition": result.transition,
         "ended": result.ended,
+        "ended_at": result.ended_at,
         "given": list(result.given),
         "by_hand": result.by_hand,
         "time": game.marking.time if game else None,
         "engine": Engine.REFERENCE.value,
         "places": places(opened.flat, game.marking) if game else [],
     }
+
+
+_ENDED = {UNTIL: "the next step would be after the given time"}
+"""What a word of a trace means that says little by itself."""
 
 
 def _sentence(trace: Path, result: dict[str, Any]) -> str:
@@ -218,10 +224,13 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
         transition = f"`{result['transition']}`: " if result.get("transition") else ""
         could = "is not known to be possible" if result.get("given_up") else "cannot be repeated"
         return f"{line}: step {result['failed_step']} {could}: {transition}{result['why']}"
-    ended = f", ended: {result['ended']}" if result.get("ended") else ""
+    word = result.get("ended")
+    # Where nothing more occurred, the run may have ended later than the last step.
+    time = result.get("ended_at") or result["time"]
+    ended = f", ended: {_ENDED.get(word, word)}" if word else ""
     text = f"{trace}: {steps}, each enabled when its turn came{ended}"
-    if result["time"]:
-        text += f", until time {time_text(result['time'])}"
+    if time:
+        text += f", at time {time_text(time)}"
     if result.get("given"):
         names = ", ".join(f"`{name}`" for name in result["given"])
         text += f"; it begins with other tokens than the net in {names}, as its header says"

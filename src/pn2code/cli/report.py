@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -12,7 +11,6 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.base.ticking import Ticking
 from pn2code.base.writable import why_folder_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -118,15 +116,13 @@ def report(
     )
 
     line = Line(first="")
-    ticking = ExitStack()
 
     def told(step: Step, done: Done | None) -> None:
         if done is None:
             console.print(f"{step.command}", style="dim", soft_wrap=True)
             what = f"{step.name} ({1 + wanted.index(step)} of {len(wanted)})"
-            ticking.enter_context(Ticking(line.say, what))
+            line.turn_to(what)
         else:
-            ticking.close()
             line.clear()
             ended = (
                 "left out" if done.code is None else f"exit code {done.code}, {done.seconds:.1f} s"
@@ -134,7 +130,7 @@ def report(
             console.print(f"  {step.name}: {ended}")
 
     try:
-        with line, ticking:
+        with line:
             carried = steps.carry_out(wanted, out, told)
         chapters = [findings.read(done, out) for done in carried]
         left_out = _left_out(config, backend)

@@ -183,6 +183,7 @@ def _trace(
     from pn2code.cell.locate import locate
     from pn2code.cli.nets import playing
     from pn2code.net import front
+    from pn2code.properties.failing import Failing
     from pn2code.replay import trace as traces
     from pn2code.semantics.evaluation.constants import compute
     from pn2code.semantics.evaluation.files import Files
@@ -205,6 +206,10 @@ def _trace(
     if examined.flat is None or examined.document is None or d.has_errors:
         stop(d, form)
     storage = config.storage if config else {}
+    typed = examined.typed
+    failing = Failing.of(config, examined.flat, typed.elaborator if typed else None, d)
+    if d.has_errors:
+        stop(d, form)
     try:
         with playing(form), TraceProgress(plain=True) as progress:
             return traces.describe(
@@ -215,6 +220,7 @@ def _trace(
                 most=steps,
                 files=Files(files),
                 failed=failed_names(examined.flat, config),
+                failing=lambda game: failing.in_(game, game.marking),
                 progress=progress.report,
             )
     except OSError as problem:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from pn2code.base.ticking import told
+from pn2code.base.progress_line import told
 from pn2code.cli.nets import in_time, open_net
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
@@ -47,8 +47,8 @@ def structure(
     in_its_time = in_time(max_seconds, net, "the structure was analysed", form)
     with in_its_time:
         opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
-        with told("looking at the structure") as ticking:
-            analysis = analyse(opened.flat, storage=opened.storage, stage=ticking.turn_to)
+        with told("looking at the structure") as line:
+            analysis = analyse(opened.flat, storage=opened.storage, stage=line.turn_to)
     if as_json:
         typer.echo(json.dumps(report.as_json(analysis), indent=1))
     else:

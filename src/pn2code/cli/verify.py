@@ -36,7 +36,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.subject import Subject
-from pn2code.cli.verify_screen import closing, full, screen
+from pn2code.cli.verify_screen import ending, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
@@ -483,11 +483,12 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
             subject=subject.rows,
             remark=subject.remark,
             counts=said.counts,
+            notes=said.notes,
             deadline=said.deadline,
         )
     else:
         body = report(said.net, said.found, now, said.answers, said.control, said.counts)
         if said.channel_model:
             body = f"{body.rstrip()}\n\n\n{channel_model.told(said.channel_model)}\n"
-        body = f"{body.rstrip()}\n\n\n{closing(said)}\n"
+        body = f"{body.rstrip()}\n\n\n{ending(said)}\n"
     writing.write(path, body, d)

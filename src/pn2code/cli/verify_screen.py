@@ -89,6 +89,11 @@ def full(said: Said) -> str:
         *(f"Perhaps {line}" for line in _growing(net, found)),
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():
+        for a in said.answers:
+            if a.evidence is not None:
+                is_deadlock, e = a.about.kind == "deadlock", a.evidence
+                end = [] if e.loop is not None else _end(said, e.trace, is_deadlock)
+                parts.append("\n".join([told(net, said.storage, a, SHOWN_STEPS), *end]))
         if said.control is not None:
             texts = control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
             for (check, run, _), text_ in zip(control_text.runs(said.control), texts, strict=True):
@@ -96,10 +101,6 @@ def full(said: Said) -> str:
                 is_deadlock = check.why == "deadlock"
                 end = [] if run.loop is not None else _end(said, run.file, is_deadlock)
                 parts.append("\n".join([text_, *end]))
-        for a in said.answers:
-            if a.evidence is not None:
-                end = [] if a.evidence.loop is not None else _end(said, a.evidence.trace, False)
-                parts.append("\n".join([told(net, said.storage, a, SHOWN_STEPS), *end]))
         for trace in found.traces:
             parts.append(_told(said, trace, f"the dead marking {trace.node}"))
         if found.error_trace is not None:
@@ -113,7 +114,7 @@ def full(said: Said) -> str:
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
     timed = "\n".join(_durations(said)).strip("\n")
-    return "\n\n\n".join([*parts, *([timed] if timed else ()), closing(said)])
+    return "\n\n\n".join([*parts, *([timed] if timed else ()), ending(said)])
 
 
 def _told(said: Said, trace: Trace, goal: str) -> str:
@@ -142,7 +143,7 @@ def _after(why: Sequence[str]) -> list[str]:
 
 
 def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
-    """What each program waits for, then which transitions are nearest to occurring and what they lack.
+    """Which transitions are nearest to occurring and what they lack, then what each program waits for.
 
     A transition that lacks messages alone is not named again where it is said what its program waits for.
     A cell may be in a deadlock where its closed net can go on.
@@ -177,7 +178,7 @@ def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = 
         programs[-rest:] = [
             f"And {_count_of(rest, 'program')} more: `--full` says what each waits for."
         ]
-    return [*programs, *near]
+    return [*near, *programs]
 
 
 def _figures(found: Exploration) -> str:
@@ -210,7 +211,10 @@ def screen(said: Said) -> str:
     if items:
         lines += ["", *_counts(said), *_premises(said)]
     lines += _durations(said)
-    end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
+    end = ["", *textwrap.wrap(_MORE, _WIDTH)]
+    for note in said.notes:
+        end += textwrap.wrap(f"{_NOTE}{note}", _WIDTH, subsequent_indent="  ")
+    end += textwrap.wrap(closing(said), _WIDTH)
     if wrong:
         has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
         kept = LEAST_WAY + 1 if has_run else 0
@@ -363,6 +367,15 @@ def _most(net: FlatNet, found: Exploration) -> str:
 
 
 def _items(said: Said) -> Iterator[_Item]:
+    """What the user has asked comes before what is asked of every cell."""
+    for a in said.answers:
+        kind = kind_of(a)
+        says = f"not known: {a.why}" if kind == "open" else said_of(a)
+        says += f" [the closed net: {a.net}]" if a.net is not None else ""
+        e = a.evidence
+        file, loop = (None, None) if e is None else (e.trace, e.loop)
+        is_deadlock = a.about.kind == "deadlock"
+        yield _Item(a.about.name, kind, says, file, loop=loop, is_deadlock=is_deadlock)
     for check in said.control.checks if said.control else ():
         run = next((run for run in check.evidence if run.file is not None), None)
         loop = None if run is None else run.loop
@@ -376,28 +389,21 @@ def _items(said: Said) -> Iterator[_Item]:
         lines = next((tuple(e.lines) for e in m.evidence), ())
         says = {"open": f"not known: {m.why}", "bad": channel_model.shown(m)}.get(kind, m.says)
         yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
-    for a in said.answers:
-        kind = kind_of(a)
-        says = f"not known: {a.why}" if kind == "open" else said_of(a)
-        says += f" [the closed net: {a.net}]" if a.net is not None else ""
-        e = a.evidence
-        file, loop = (None, None) if e is None else (e.trace, e.loop)
-        yield _Item(a.about.name, kind, says, file, loop=loop)
 
 
-_TITLES = ("Controller checks", "Shared files", "Properties")
+_TITLES = ("Properties", "Controller checks", "Shared files")
 
 
 def _groups(said: Said) -> tuple[tuple[str, Sequence[str], Sequence[str | None]], ...]:
     """For each kind of question: its name, how the answers came out, what they rest on."""
     items = list(_items(said))
     checks = said.control.checks if said.control else ()
-    first, second = len(checks), len(checks) + len(said.channel_model)
+    first, second = len(said.answers), len(said.answers) + len(checks)
     kinds = [i.kind for i in items]
     return (
-        (_TITLES[0], kinds[:first], [c.rests_on for c in checks]),
-        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.channel_model]),
-        (_TITLES[2], kinds[second:], [a.rests_on for a in said.answers]),
+        (_TITLES[0], kinds[:first], [a.rests_on for a in said.answers]),
+        (_TITLES[1], kinds[first:second], [c.rests_on for c in checks]),
+        (_TITLES[2], kinds[second:], [m.rests_on for m in said.channel_model]),
     )
 
 
@@ -584,6 +590,13 @@ def _cut(line: str) -> str:
 
 
 # --- the verdict ---------------------------------------------------------------------------------
+
+_NOTE = "Note: "
+
+
+def ending(said: Said) -> str:
+    """The last lines: what a yes leaves to be remarked, then the verdict."""
+    return "\n".join([*(f"{_NOTE}{x}" for x in said.notes), closing(said)])
 
 
 def closing(said: Said) -> str:

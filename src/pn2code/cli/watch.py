@@ -197,7 +197,7 @@ def _cell(
     }
     initial = initial_of((g.name, g.marking) for g in begun.given)
     described = describe(generated, robot_cell, document, 1.0)
-    return WatchedCell(partition, config, robot_cell, blocks, initial), {
+    return WatchedCell(partition, config, robot_cell, blocks, initial, generated.failing), {
         **described,
         "watched": True,
     }

@@ -8,8 +8,9 @@ bug in pn2code).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import field, replace
 from enum import Enum
+from typing import Protocol
 
 from pn2code.base.frozen import frozen, record
 from pn2code.diagnostics.codes import require_code
@@ -51,6 +52,7 @@ class Diagnostic:
         label: text beside the caret.
         notes: further facts.
         hint: what to do ("help:").
+        accepted: why somebody who has looked at this warning accepts it (`[[accept]]` of cell.toml); "": nobody has.
     """
 
     severity: Severity
@@ -61,6 +63,23 @@ class Diagnostic:
     label: str = ""
     notes: tuple[Note, ...] = ()
     hint: str = ""
+    accepted: str = ""
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether it need not be shown to people again."""
+        return bool(self.accepted) and self.severity is Severity.WARNING
+
+
+class Acceptance(Protocol):
+    """What is accepted (`accepted.Rule`)."""
+
+    @property
+    def reason(self) -> str:
+        """Why."""
+
+    def accepts(self, item: Diagnostic) -> bool:
+        """Whether it is about this one."""
 
 
 @record
@@ -68,6 +87,7 @@ class Diagnostics:
     """What the stages of one run have to say; the only mutable value handed from stage to stage."""
 
     items: list[Diagnostic] = field(default_factory=list)
+    rules: tuple[Acceptance, ...] = ()
     _times: int = field(default=0, repr=False, compare=False)
     _looked_at: list[Diagnostic] = field(default_factory=list, repr=False)
     _list: list[Diagnostic] | None = field(default=None, repr=False)
@@ -134,6 +154,11 @@ class Diagnostics:
                 raise TooManyDiagnosticsError
             self.items.append(item)
 
+    def _judged(self, item: Diagnostic) -> Diagnostic:
+        """The same, accepted if somebody has: whoever has found it may know nothing of cell.toml."""
+        rule = next((r for r in self.rules if r.accepts(item)), None)
+        return item if rule is None else replace(item, accepted=rule.reason)
+
     def give_up(self, code: str, message: str, at: Origin, hint: str) -> None:
         """A last error, after `TooManyDiagnosticsError`."""
         require_code(code)
@@ -183,11 +208,11 @@ class Diagnostics:
             at = d.origin
             return not at.file.endswith(".toml"), at.file, at.line, at.column, d.code
 
-        return sorted(self.items, key=place)
+        return sorted(self, key=place)
 
     def __iter__(self) -> Iterator[Diagnostic]:
         """Iterate in order of report."""
-        return iter(self.items)
+        return map(self._judged, self.items)
 
     def __len__(self) -> int:
         """Return the number of diagnostics."""

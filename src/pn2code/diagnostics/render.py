@@ -126,24 +126,29 @@ def as_json(item: Diagnostic) -> dict[str, object]:
         "line": item.origin.line,
         "column": item.origin.column,
         "hint": item.hint,
+        **({"accepted": item.accepted} if item.is_accepted else {}),
     }
 
 
 def report(items: Iterable[Diagnostic], form: str = "full", style: Style = plain) -> str:
-    """All of them: "full", "concise", or "json" (one object a line)."""
+    """All of them: "full", "concise", or "json" (one object a line, those that are accepted as well)."""
     if form == "json":
         return "\n".join(json.dumps(as_json(i), ensure_ascii=False) for i in items)
+    items = [i for i in items if not i.is_accepted]
     if form == "concise":
         return "\n".join(concise(i) for i in items)
     return "\n\n".join(full(i, style) for i in items)
 
 
 def count(items: Iterable[Diagnostic]) -> str:
-    """`2 errors, 1 warning`, or `no errors`."""
+    """`2 errors, 1 warning, 1 accepted warning`, or `no errors`."""
     found = list(items)
     errors = sum(i.severity is Severity.ERROR for i in found)
-    warnings = sum(i.severity is Severity.WARNING for i in found)
+    accepted = sum(i.is_accepted for i in found)
+    warnings = sum(i.severity is Severity.WARNING for i in found) - accepted
     words = [f"{errors} error{'s' * (errors != 1)}" if errors else "no errors"]
     if warnings:
         words.append(f"{warnings} warning{'s' * (warnings != 1)}")
+    if accepted:
+        words.append(f"{accepted} accepted warning{'s' * (accepted != 1)}")
     return ", ".join(words)

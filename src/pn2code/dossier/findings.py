@@ -106,7 +106,8 @@ def _checked(said: Json) -> tuple[str, list[Finding]]:
         Finding(
             f"{d.get('page') or 'the net'}{': ' + d['element'] if d.get('element') else ''}",
             {"error": NO}.get(d["severity"], NOTED),
-            f"{d['severity']} {d['code']}: {d['message']}",
+            f"{d['severity']} {d['code']}: {d['message']}"
+            + (f" (accepted: {d['accepted']})" if d.get("accepted") else ""),
         )
         for d in said["diagnostics"]
     ]
@@ -155,6 +156,7 @@ def _verified(said: Json) -> tuple[str, list[Finding]]:
     ]
     found += [_answer(c["check"], c, c["says"]) for c in said.get("controller") or ()]
     found += [_answer(m["check"], m, m["says"]) for m in said.get("medium") or ()]
+    found += [Finding("note", NOTED, x) for x in said.get("notes") or ()]
     found += _cycles(durations) if durations else []
     whole = "all" if said["complete"] else f"a part ({said['why']}): {said['nodes']:,} of its"
     nodes = f" {said['nodes']:,}" if said["complete"] else ""
@@ -245,7 +247,9 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     ended = said["verdict"]
     places = ", ".join(said.get("final") or ())
     is_good = ended == "finished" and not said.get("failed")
-    text = " ".join(x for x in (ended, places and f"in {places}", said["reason"]) if x)
+    others = [x for x in said.get("failed") or () if x not in (said.get("final") or ())]
+    why = f"(a failure: {'; '.join(others)})" if others else ""
+    text = " ".join(x for x in (ended, places and f"in {places}", why, said["reason"]) if x)
     found = [Finding("end", YES if is_good else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."

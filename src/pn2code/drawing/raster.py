@@ -2,7 +2,7 @@
 
     missing = why_not(".png")     # "" if it can be made
     data = png(svg)               # two pixels for each unit of the drawing
-    data = pdf([page, page])      # a page each, of the drawing's size; texts can be selected
+    data = pdf([page, page])      # a page each, of the drawing's size; texts can be selected, and are there once
 
 The fonts of the machine are used; where it has none, those that come with matplotlib are.
 """
@@ -15,6 +15,8 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+
+from pn2code.drawing.edges import Edges
 
 KINDS = (".png", ".pdf")
 """Endings of the files."""
@@ -64,8 +66,16 @@ def pdf(pages: Sequence[str]) -> bytes:
     fonts.load_fonts_dir(str(_fonts()))
     spare = [svg.replace("sans-serif", f"'{_SPARE}', sans-serif") for svg in pages]
     whole = pypdf.PdfWriter()
-    for page in svg2pdf_py.svg_pages_to_pdfs(spare, fonts):
+    outlined = svg2pdf_py.ConversionOptions(embed_text=False)
+    pairs = zip(
+        svg2pdf_py.svg_pages_to_pdfs(spare, fonts),
+        svg2pdf_py.svg_pages_to_pdfs(spare, fonts, outlined),
+        strict=True,
+    )
+    edges = Edges()
+    for page, shapes in pairs:
         whole.append(io.BytesIO(page))
+        edges.draw(whole, whole.pages[-1], pypdf.PdfReader(io.BytesIO(shapes)).pages[0])
     whole.metadata = None  # neither date nor program
     written = io.BytesIO()
     whole.write(written)

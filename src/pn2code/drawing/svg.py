@@ -412,7 +412,7 @@ def _text(
     top = centre[1] - text.LINE * len(block) / 2
     spans = []
     for i, line in enumerate(block):
-        if not line:
+        if not line.strip():
             continue
         y = top + text.LINE * (i + 0.5) + text.SIZE * 0.35
         # The length keeps a text as wide as its author saw it, whatever font there is.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from pn2code.base.how_far import counted
 from pn2code.emission import c_rows, c_tables
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_literals import c_big_initialiser
@@ -215,7 +216,8 @@ class _Emitter(Transitions):
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
-        transitions = [self._transition(g) for g in net.shared]  # what they call is known then
+        groups = counted(net.shared, "writing transitions")
+        transitions = [self._transition(g) for g in groups]  # what they call is known then
         rows = sorted(
             (
                 (i, self._row(net.transitions[i], g, code), code)

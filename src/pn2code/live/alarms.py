@@ -33,7 +33,11 @@ class Alarms:
         if verdict["word"] != "finished":
             self.fault(t, "", verdict["reason"] or verdict["word"])
         elif verdict.get("failed"):
-            self.fault(t, "", f"the cell has ended in {', '.join(verdict['failed'])}")
+            names = [x for x in verdict["failed"] if x in verdict.get("final", ())]
+            where = f" in {', '.join(names)}" if names else ""
+            others = [x for x in verdict["failed"] if x not in names]
+            why = f", a failure: {'; '.join(others)}" if others else ""
+            self.fault(t, "", f"the cell has ended{where}{why}")
 
     def fault(self, t: float, party: str, text: str) -> None:
         """Something that stops the cell, or must not be."""

@@ -28,6 +28,7 @@ from pn2code.live.observed import Observed
 from pn2code.live.robots import Robots
 from pn2code.live.seen import Life, Seen
 from pn2code.live.tails import Tail
+from pn2code.properties.failing import Failing
 from pn2code.replay.growing import GrowingCourse
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.semantics.game.marking import BindingElement, Marking
@@ -61,6 +62,7 @@ class WatchedCell:
     robot_cell: RobotCell
     blocks: Mapping[str, tuple[Block, ...]]
     initial: Json
+    failing: Failing = Failing()
 
 
 class Watched(Closing):
@@ -111,7 +113,14 @@ class Watched(Closing):
 
     def failed(self, final: Iterable[str]) -> list[str]:
         """Which of some final places mean that the cell has failed."""
-        return self._cell.partition.failed(final)
+        final = list(final)
+        names = self._cell.partition.failed(final)
+        failing, game = self._cell.failing, self._follower.game
+        if not failing or not final:
+            return names
+        if self._lost or game is None:
+            return [*names, *failing.not_known("the marking is not known")]
+        return [*names, *failing.in_(game, game.marking)]
 
     # --- what comes ------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pn2code.base.how_far import counted
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.ml.core.colsets import Colset, Kind
@@ -276,7 +277,8 @@ class _Checker:
         if wrong:
             self.note_neighbours(page.transitions, wrong)
         names = {p.id: p for p in page.places}
-        transitions = [self.transition(t, colsets, names) for t in page.transitions]
+        all_of_it = counted(page.transitions, f"transitions of page {page.name}")
+        transitions = [self.transition(t, colsets, names) for t in all_of_it]
         return TypedPage(
             id=page.id,
             name=page.name,

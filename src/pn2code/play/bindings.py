@@ -59,7 +59,10 @@ def listed(
 
 
 def _enabled(game: Game, t: FlatTransition) -> Iterator[Binding]:
-    if t in game.enabled_transitions(game.marking):
+    enabled, raising = game.enabled_or_raising(game.marking)
+    if t.index in raising:
+        raise raising[t.index]
+    if t in enabled:
         yield from game.enabling.enabled(t, game.marking)
 
 

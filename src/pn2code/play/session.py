@@ -33,7 +33,12 @@ from pn2code.properties.judge import tokens
 from pn2code.semantics.evaluation.random import CHOICE, RandomStream
 from pn2code.semantics.evaluation.references import References
 from pn2code.semantics.game.enabling import GameError
-from pn2code.semantics.game.marking import BindingElement, Marking, initial_differences
+from pn2code.semantics.game.marking import (
+    BindingElement,
+    Marking,
+    element_text,
+    initial_differences,
+)
 from pn2code.semantics.game.token_game import Game, NotEnabled
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Value
 from pn2code.trace.token_game import occurrence
@@ -167,7 +172,8 @@ class Session:
         """
         before = self.game.marking, self.game.steps
         try:
-            self.game.marking = self.game.advance_time(self.game.marking)
+            if not self.game.enabled_or_raising(self.game.marking)[0]:
+                self.game.marking = self.game.advance_time(self.game.marking)
         except GameError as error:
             raise of_game(error) from None
         self._occur(element, before, None, checked=True)
@@ -231,7 +237,9 @@ class Session:
     ) -> Breakpoint | None:
         game = self.game
         try:
-            occurred = game.fire(element, checked=checked)
+            if checked:
+                self._expect_enabled(element)
+            occurred = game.fire(element, checked=False)
         except GameError as error:
             game.marking, game.steps = before
             raise of_game(error) from None
@@ -246,6 +254,21 @@ class Session:
             return self.watching.occurred(number, occurred)
         except GameError as error:
             raise of_game(error) from None
+
+    def _expect_enabled(self, element: BindingElement) -> None:
+        """Looks at the transition itself; another one that raises an exception does not disable it.
+
+        Raises:
+            NotEnabled: it is not enabled with this binding, or another one has a higher priority.
+            GameError: an inscription of it raises an exception.
+        """
+        game = self.game
+        why = game.why_disabled(game.marking, element, priorities=False)
+        enabled = [t.index for t in game.enabled_or_raising(game.marking)[0]]
+        if why is None and element.transition not in enabled:
+            why = game.why_disabled(game.marking, element)
+        if why is not None:
+            raise NotEnabled(f"{element_text(game.colours, game.net, element)}: {why}")
 
     def _record(
         self,

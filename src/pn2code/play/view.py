@@ -6,6 +6,7 @@ view.state()  # {"position": 3, "places": {"7": [2, "1`1++\\n1`5"]}, "enabled": 
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import Any
 
 from pn2code.play.history import Entry, Kind
@@ -20,6 +21,8 @@ LONGEST = 4_000
 """Characters of a marking that are sent; the page asks for the rest."""
 WHOLE = 2_000_000
 """Characters of a marking that somebody asks for."""
+MOST_RAISING = 100
+"""Transitions that raise an exception are told."""
 MOST_WORDS = 400
 """Characters of a value in a binding."""
 MOST_POINTS = 2_000
@@ -48,7 +51,7 @@ class View:
         """What has changed since the last time."""
         session = self.session
         game, history = session.game, session.history
-        enabled, later, error = self._enabled()
+        enabled, later, error, raising = self._enabled()
         last = history.position - 1
         return {
             "position": history.position,
@@ -61,6 +64,7 @@ class View:
             "enabled": self._changed(enabled),
             "later": None if later is None else time_text(later),
             "error": error,
+            "raising": raising,
             "last": entry_row(session, last) if last >= history.forgotten else None,
             "saves": session.run[2],
             "output": self._taken(session.output),
@@ -68,14 +72,24 @@ class View:
             "monitors": self._monitors(),
         }
 
-    def _enabled(self) -> tuple[list[int], int | float | None, Json | None]:
+    def _enabled(self) -> tuple[list[int], int | float | None, Json | None, list[Json]]:
+        """What is enabled; when something is; why the net cannot go on; transitions that raise an exception."""
         game = self.session.game
+        found, wrong = game.enabled_or_raising(game.marking)
+        enabled = [t.index for t in found]
+        raising = [
+            {"transition": index, "message": error.message}
+            for index, error in islice(wrong.items(), MOST_RAISING)
+        ]
+        if enabled:
+            return enabled, None, None, raising
         try:
-            found = [t.index for t in game.enabled_transitions(game.marking)]
-            return found, None if found else self.session.later(), None
+            if wrong:
+                raise next(iter(wrong.values()))
+            return [], self.session.later(), None, raising
         except GameError as error:
             trouble = of_game(error)
-            return [], None, {"message": trouble.message, "rows": trouble.rows}
+            return [], None, {"message": trouble.message, "rows": trouble.rows}, raising
 
     def _changed(self, enabled: list[int]) -> list[int] | Json:
         """All that is enabled, for a page that knows nothing yet; else what is now, and what is no more."""

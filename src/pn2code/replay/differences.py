@@ -113,6 +113,9 @@ def _end(run: Json) -> str:
         text += f": {verdict['reason']}"
     if final := verdict.get("final"):
         text += f", with a token in {', '.join(sorted(map(str, final)))}"
+    if failed := [str(x) for x in verdict.get("failed") or ()]:
+        why = [x for x in failed if x not in (final or ())]
+        text += f", a failure{': ' if why else ''}{'; '.join(why)}"
     return text if loop is None else f"{text}, repeated from step {loop} on"
 
 

@@ -48,6 +48,7 @@ def describe(
     most: int = MOST_STEPS,
     files: Files | None = None,
     failed: Container[str] = (),
+    failing: Callable[[Game], list[str]] = lambda _game: [],
     progress: Progress = _nothing,
 ) -> Json:
     """The description of a trace file.
@@ -59,6 +60,7 @@ def describe(
         most: how many steps are shown; the rest is left out, and the page says so.
         files: what the net can do with files.
         failed: final places that mean that the cell has failed.
+        failing: says which other conditions at the end mean so.
         progress: how far it is.
 
     Raises:
@@ -68,10 +70,12 @@ def describe(
         reader = _Lines(_whole(lines), most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
-        course, refused = follow(
+        course, refused, game = _followed(
             reader, net, storage, by_steps=counts, files=files, loop=claimed_loop(trace)
         )
     end = reader.end or {}
+    has_finished = bool(end.get("final")) and not reader.is_cut and game is not None
+    others = failing(game) if has_finished and game is not None else []
     return {
         "pn2code": {"run": VERSION},
         "kind": "trace",
@@ -82,7 +86,7 @@ def describe(
             "word": "cut" if reader.is_cut else _word(end),
             "reason": str(end.get("reason", "")),
             "final": [str(p) for p in end.get("final", ())],
-            "failed": [str(p) for p in end.get("final", ()) if p in failed],
+            "failed": [*(str(p) for p in end.get("final", ()) if p in failed), *others],
         },
         "facts": [["trace", trace.name], ["by", by], ["steps", f"{course.steps:,}"]],
         "net": nets.describe(document, net),
@@ -113,6 +117,19 @@ def follow(
         by_steps: the axis counts steps; else it is that of the times in the trace.
         loop: as for `replay_lines`.
     """
+    return _followed(lines, net, storage, by_steps=by_steps, files=files, loop=loop)[:2]
+
+
+def _followed(
+    lines: Iterable[str],
+    net: FlatNet,
+    storage: Mapping[str, str],
+    *,
+    by_steps: bool,
+    files: Files | None,
+    loop: int | str | None,
+) -> tuple[Course, Json | None, Game | None]:
+    """The same, and the game at its end if the whole trace was repeated."""
     course = Course(net)
     latest = 0.0
 
@@ -125,7 +142,7 @@ def follow(
         course.step(game, occurred, float(course.steps + 1) if by_steps else latest)
 
     result = replay_lines(lines, net, storage, watch=watch, files=files, loop=loop)
-    return course, _refusal(result)
+    return course, _refusal(result), result.game if result.ok else None
 
 
 def _refusal(result: ReplayResult) -> Json | None:

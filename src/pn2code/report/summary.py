@@ -196,6 +196,9 @@ def page(summary: dict[str, Any]) -> RenderableType:
     head.append(f", backend {summary['backend']}")
     if summary["final"]:
         head.append(f", ended in {', '.join(p.rpartition('.')[2] for p in summary['final'])}")
+    if summary["failed"]:
+        why = [x for x in summary["failed"] if x not in summary["final"]]
+        head.append(f", a failure{': ' if why else ''}{'; '.join(why)}", "red")
     if summary["reason"]:
         head.append(f"\n{summary['reason']}", "red")
 

@@ -43,7 +43,8 @@ CHOICE = register(
     "robot-choice",
     "two transitions of a robot may be enabled together",
     "A net chooses freely, but a script follows the documented order: priority first, then the order in the file. If "
-    "this is not intended, add guards that exclude each other, e.g. `k = 1` and `k = 2`.",
+    "this is not intended, add guards that exclude each other, e.g. `k = 1` and `k = 2`; if it is, accept the warning "
+    'in cell.toml: `[[accept]]` with `warning = "robot-choice"`, `elements` (both transitions) and a `reason`.',
 )
 PRIMITIVE = register(
     "robot-primitive",

@@ -422,6 +422,7 @@ def _engine(
         "backend": backend,
         "monitor": Monitor(prepared.robot_cell, backend),
         "observers": list(observers),
+        "failing": prepared.generated.failing,
     }
     if options.realtime:
         parties = {

@@ -26,6 +26,7 @@ import numpy as np
 from pn2code.base.frozen import record
 from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
+from pn2code.properties.failing import Failing
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import (
@@ -61,6 +62,7 @@ from pn2code.robot.zones import ZoneWatch
 from pn2code.run.accuracy import distance, off_line
 from pn2code.run.command_words import kind_and_label, words
 from pn2code.run.device import DeviceExecutor
+from pn2code.run.failing import failed_in
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Said
 from pn2code.run.handling import PartKeeper
@@ -193,6 +195,7 @@ class Engine:
         monitor: what is checked at each sample.
         interrupted: asked again and again; not "": who wants the cell to stop, and it stops safely.
         stops: whose commands are held up, and when; None: nobody's.
+        failing: conditions that mean that the cell has failed.
     """
 
     record: RunRecord
@@ -208,6 +211,7 @@ class Engine:
     observers: list[Observer] = field(default_factory=list)
     interrupted: Callable[[], str] = _nobody
     stops: Stops | None = None
+    failing: Failing = field(default_factory=Failing)
     now: float = 0.0
     activity: str = ""
     parts: PartKeeper = field(init=False)
@@ -307,7 +311,11 @@ class Engine:
         if self.record.verdict == "finished":
             self.supervisor.close()  # its trace is complete then
             self.record.final = self._final_places()
-            self.record.failed = tuple(self.partition.failed(self.record.final))
+            header, events = self.supervisor_trace.header, self.record.events
+            self.record.failed = (
+                *self.partition.failed(self.record.final),
+                *failed_in(self.failing, self.partition, header, events),
+            )
         end: dict[str, Any] = {"t": self.now, "event": "end", "why": self.record.verdict}
         if self.record.reason:
             end["reason"] = self.record.reason

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import counted, counting
 from pn2code.structure import flows
 from pn2code.structure.coloured import ColouredInvariant
 from pn2code.structure.core_terms import is_multiset
@@ -220,7 +221,9 @@ class _Search:
     def exactly(self, work: int) -> bool:
         """In integers; False when that has been given up."""
         program = MarkingProgram(self._matrix, self._tokens)
+        more = counting("bounds of places", total=len(self._left))
         for position, i in enumerate(self._left):
+            more()
             try:
                 self._found(i, program.most(i, work))
             except TooMuchWorkError:
@@ -235,7 +238,7 @@ class _Search:
         program = flows.Program(self._matrix, at_most=True)
         possible = program.support()
         costs = [float(n) for n in self._tokens]
-        for i in self._left:
+        for i in counted(self._left, "bounds of places"):
             if program.solved > budget:
                 return
             if i in possible:

@@ -19,6 +19,7 @@ from math import gcd
 from typing import Any
 
 from pn2code.base.frozen import frozen, record
+from pn2code.base.how_far import counted, counting
 
 Row = Mapping[int, int]
 Vector = dict[int, int]
@@ -113,10 +114,12 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
     growth = {c: _growth(working, members, c) for c, members in columns.items()}
     queue = [(n, c) for c, n in growth.items()]
     heapify(queue)
+    more = counting("invariants", total=len(columns))
     while queue:
         expected, column = heappop(queue)
         if column not in columns or growth[column] != expected:
             continue
+        more()
         involved = columns.pop(column)
         plus = sorted(i for i in involved if working[i].rest[column] > 0)
         minus = sorted(i for i in involved if working[i].rest[column] < 0)
@@ -256,7 +259,7 @@ def _covering(rows: Sequence[Row], known: Iterable[Vector], limits: Limits) -> l
     possible = program.support()
     found: list[Vector] = []
     budget = min(limits.programs, max(20, 300_000 // max(1, sum(map(len, rows)))))
-    for i in range(len(rows)):
+    for i in counted(range(len(rows)), "invariants that cover places"):
         if program.solved > budget:
             break
         if i not in covered and i in possible:

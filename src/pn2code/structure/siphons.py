@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import counting
 from pn2code.structure.skeleton import Mode, Size, Skeleton
 
 
@@ -123,7 +124,9 @@ def minimal(rules: Rules, places: Iterable[int], *, most: int, work: int) -> Set
     stack: list[tuple[int, int]] = [
         (rules.largest(mask_of(places)), 0)
     ]  # obeying set, places it must keep
+    more = counting("siphons or traps", noun="sets of places")
     while stack:
+        more()
         whole, required = stack.pop()
         if not whole or required & ~whole:
             continue

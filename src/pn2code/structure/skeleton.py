@@ -16,6 +16,7 @@ import itertools
 from collections.abc import Iterator, Mapping
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import counting
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
@@ -248,7 +249,9 @@ def skeleton(net: FlatNet, symbolic: Symbolic) -> Skeleton:
     inhibitors: dict[int, list[int]] = {}
     counts: list[dict[int, int]] = [{} for _ in net.places]
     columns: list[int] = []
+    more = counting("what transitions move", total=len(net.transitions))
     for t in net.transitions:
+        more()
         facts = symbolic.facts(t)
         if any(counter.is_false(g) for g in t.guards):
             never.add(t.index)

@@ -77,6 +77,7 @@ class ReplayResult:
         given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
         given: places that begin with other tokens than the net's, because the header says so.
         by_hand: notes of what a person has chosen.
+        ended_at: the model time of that word; None: it has none.
     """
 
     ok: bool
@@ -89,6 +90,7 @@ class ReplayResult:
     given_up: bool = False
     given: tuple[str, ...] = ()
     by_hand: int = 0
+    ended_at: float | None = None
 
     @property
     def marking(self) -> Marking | None:
@@ -249,6 +251,7 @@ def replay_lines(
     markings: Markings | None = None
     latest = 0.0
     by_hand = 0
+    ended_at: float | None = None
     repeated: Repeated | None = None
     try:
         for number, text in enumerate(lines, 1):
@@ -294,6 +297,7 @@ def replay_lines(
                 ended = str(line.get("why", ""))
                 ending = Ending(by, rules.own_clock, who, markings, may_fail_outside)
                 _refuse(end_problem(game, line, ending) or time_problem(line, latest))
+                ended_at = line.get("t") if rules.own_clock else None
                 _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
                 assert rules is not None and markings is not None
@@ -317,7 +321,9 @@ def replay_lines(
         why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
         gave_up = isinstance(wrong, GivenUpError)
         return ReplayResult(False, steps, why, at, transition, ended, game, gave_up, given)
-    return ReplayResult(True, steps, "", 0, "", ended, game, given=given, by_hand=by_hand)
+    return ReplayResult(
+        True, steps, "", 0, "", ended, game, given=given, by_hand=by_hand, ended_at=ended_at
+    )
 
 
 def _refuse(problem: str | None) -> None:

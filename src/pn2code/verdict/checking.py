@@ -14,7 +14,8 @@ from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Severity
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.input_files import begin
 from pn2code.net import emptiness, free_variables, front
 from pn2code.net.front import Examined
@@ -78,6 +79,8 @@ def check(
             channels = rows(partition, config)
             own = {i for i, owner in enumerate(partition.transition_owner) if owner == 0}
             free_variables.remark(partition.net, d, own)
+        if partition is not None and not d.has_errors:
+            _unneeded(config, d)
     else:
         if result.flat is not None:
             free_variables.remark(result.flat, d)
@@ -87,6 +90,28 @@ def check(
     return Checked(
         file, result, is_fine=result.flat is not None and not d.has_errors, channels=channels
     )
+
+
+def _unneeded(config: CellConfig, d: Diagnostics) -> None:
+    """Warnings that cell.toml accepts, and that there are not."""
+    from pn2code.cell.codes import ACCEPT_UNNEEDED
+    from pn2code.diagnostics.accepted import elements
+
+    found = [i for i in d if i.severity is Severity.WARNING]
+    for rule in config.accepted:
+        if any(rule.accepts(i) for i in found):
+            continue
+        alike = [i for i in found if i.code == rule.code]
+        about = "; ".join(" and ".join(f"`{x}`" for x in elements(i)) for i in alike)
+        near = did_you_mean(rule.code, [i.code for i in found]) if not alike else ""
+        hint = near or (f"there is one about {about}" if about else "remove the entry")
+        what = " and ".join(f"`{x}`" for x in rule.elements)
+        d.warning(
+            ACCEPT_UNNEEDED,
+            f"there is no warning `{rule.code}`{' about ' if what else ''}{what} to be accepted",
+            rule.origin,
+            hint=hint,
+        )
 
 
 def examine_cell(
@@ -136,7 +161,11 @@ def examine_cell(
 
 
 def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
-    """Whether what is asked about the net can be understood; it is not answered."""
+    """Whether what is asked about the net, and of the end of a run, can be understood; it is not answered."""
+    if result.flat is not None and config is not None and config.report.conditions:
+        from pn2code.properties.failing import Failing
+
+        Failing.of(config, result.flat, result.typed.elaborator if result.typed else None, d)
     beside = net.with_suffix(".properties.toml").is_file()
     if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
         return

@@ -35,6 +35,7 @@ from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.result import row as exploration_row
+from pn2code.verify.report.never_text import never
 
 MOST_COLOURS = 200
 """Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
@@ -137,6 +138,12 @@ class Said:
         """The worst answer: where no property is asked, whether all markings were seen counts as well."""
         return outcome.verdict(self.found, self.counts)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is no failure, and to be said beside a yes: transitions that never occur."""
+        found = never(self.net, self.found, self.control) if self.verdict == "yes" else None
+        return (found.sentence,) if found is not None and found.transitions else ()
+
     def row(self) -> dict[str, Any]:
         """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""
         row = exploration_row(self.net, self.found)
@@ -148,6 +155,7 @@ class Said:
             row["cell"] = self.control.row()
         if self.channel_model:
             row["medium"] = [a.row() for a in self.channel_model]
+        row["notes"] = list(self.notes)
         if self.durations is not None:
             row["durations"] = self.durations.row()
         return row

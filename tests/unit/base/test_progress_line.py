@@ -9,6 +9,7 @@ import time
 import pytest
 from rich.console import Console
 
+from pn2code.base.how_far import counting
 from pn2code.base.progress_line import Line
 from pn2code.run.progress import Progress
 from pn2code.simulate import progress as simulation
@@ -139,3 +140,34 @@ def test_an_exploration_with_a_limit_does_not() -> None:
     with exploration.ProgressLine(stream=stream) as line:
         line.update({"phase": "explore", "states": 7, "seconds": 1000.0})
     assert "--max-seconds" not in stream.getvalue()
+
+
+def test_what_is_over_soon_is_not_mentioned_and_what_lasts_is_told_once_a_second() -> None:
+    now, stream = 100.0, Telling("translating the net: 4 s, so far 2")
+    with Line(stream=stream, first="", clock=lambda: now, silence=0.01) as line:
+        line.turn_to("reading the net")
+        assert stream.getvalue() == ""
+        line.turn_to("translating the net", lambda: ", so far 2")
+        now += 4.0
+        assert stream.seen.wait(60)
+        line.clear()
+        stream.truncate(0)
+        time.sleep(0.05)
+        assert "translating" not in stream.getvalue()
+
+
+def test_one_line_counts_the_seconds() -> None:
+    """What is told of a loop deep inside, and the seconds of what says nothing, come from one thread."""
+    stream = Terminal()
+    before = threading.active_count()
+    with Line(stream=stream, first="reading ...") as line:
+        line.turn_to("translating")
+        assert threading.active_count() == before + 1
+        more = counting("transitions", total=4)
+        more()
+        more._began -= 2.0
+        more._said -= 2.0
+        more()
+        assert stream.getvalue().endswith("transitions: 2 of 4, 1.0 a second, about 2 s left")
+    counting("transitions", total=4)()
+    assert stream.getvalue().endswith("\x1b[K")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from helpers.netbuilder import write
-from pn2code.base import ticking
+from pn2code.base.progress_line import Line
 from pn2code.cli.main import app
 
 NET = """
@@ -38,16 +37,7 @@ def test_it_is_told_what_takes_the_time(
 ) -> None:
     told: list[str] = []
 
-    class Noted(ticking.Ticking):
-        def __init__(self, say: Callable[[str], None], what: str) -> None:
-            super().__init__(say, what)
-            told.append(what)
-
-        def turn_to(self, what: str) -> None:
-            super().turn_to(what)
-            told.append(what)
-
-    monkeypatch.setattr(ticking, "Ticking", Noted)
+    monkeypatch.setattr(Line, "turn_to", lambda _, what: told.append(what))
     monkeypatch.chdir(tmp_path)
     write(NET, tmp_path / "net.cpn")
     done = CliRunner().invoke(app, [words[0], "net.cpn", *words[1:]])

@@ -31,7 +31,16 @@ def test_a_small_clearance_is_named() -> None:
 def test_an_end_that_is_not_wanted_is_told() -> None:
     ends = {
         "": {"word": "finished", "reason": "", "final": ["Over"], "failed": []},
-        "the cell has ended in Jammed": {"word": "finished", "failed": ["Jammed"]},
+        "the cell has ended in Jammed": {
+            "word": "finished",
+            "final": ["Jammed"],
+            "failed": ["Jammed"],
+        },
+        "the cell has ended, a failure: {x = 1}": {
+            "word": "finished",
+            "final": ["Over"],
+            "failed": ["{x = 1}"],
+        },
         "robot.tdl:3": {"word": "stopped", "reason": "robot.tdl:3", "failed": []},
     }
     for text, verdict in ends.items():

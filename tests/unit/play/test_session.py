@@ -12,6 +12,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.play import bindings, saving
 from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble
+from pn2code.play.view import View
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
 from pn2code.simulate import reference
@@ -342,3 +343,74 @@ class TestTraces:
         with pytest.raises(Trouble, match="this is no trace"):
             saving.load(game, tmp_path / "x")
         assert game.history.position == 1
+
+
+RAISES = """
+net Raises
+  standard
+  colset L = list INT;
+  var n : INT;
+  var l : L;
+  page Top
+    place A : INT = 1`1 ++ 1`2
+    place B : L = 1`[]
+    place C : INT
+    trans Good
+      in A : n
+      out C : n
+    trans Bad priority 50 guard [hd l > 0]
+      in B : l
+      out C : 0
+    trans Mend
+      in B : l
+      out B : 7::l
+"""
+
+RAISED = "`Top.Bad` raised the exception `Empty`"
+
+
+class TestRaising:
+    """A transition that raises an exception stops neither the others nor the game."""
+
+    def test_the_others_are_enabled_and_occur(self, tmp_path: Path) -> None:
+        game = session(tmp_path, RAISES)
+        view = View(game)
+        state = view.state()
+        good, bad, mend = (number(game, x) for x in ("Good", "Bad", "Mend"))
+        assert state["enabled"] == [good, mend]
+        assert state["error"] is None and state["later"] is None
+        ((told,),) = [state["raising"]]
+        assert told["transition"] == bad and RAISED in told["message"]
+        game.fire_any(good)
+        assert game.history.position == 1
+        with pytest.raises(Trouble, match=RAISED):
+            game.fire_any(bad)
+        # As in CPN Tools, a step at random ends where it looks at that transition.
+        with pytest.raises(Trouble, match=RAISED):
+            game.step()
+        assert game.history.position == 1
+        game.fire_any(mend)
+        state = view.state()
+        assert state["raising"] == [] and state["enabled"] == {"more": [bad], "less": [good, mend]}
+        with pytest.raises(Trouble, match="is not enabled"):  # `Bad` has a higher priority now
+            game.fire_any(good)
+        game.fire_any(bad)
+        assert game.history.position == 3
+
+    def test_what_was_played_can_be_saved_and_loaded(self, tmp_path: Path) -> None:
+        game = session(tmp_path, RAISES.replace(" priority 50", ""))
+        for name in ("Good", "Mend"):
+            game.fire_any(number(game, name))
+            trace = tmp_path / f"{name}.trace.jsonl"
+            saving.save(game, trace)  # it is looked at again
+            before = game.game.marking
+            saving.load(game, trace)
+            assert game.game.marking == before
+
+    def test_where_nothing_else_is_enabled_the_net_cannot_go_on(self, tmp_path: Path) -> None:
+        game = session(
+            tmp_path, RAISES[: RAISES.index("    trans Mend")].replace("1`1 ++ 1`2", "empty")
+        )
+        state = View(game).state()
+        assert state["enabled"] == [] and RAISED in state["error"]["message"]
+        assert len(state["raising"]) == 1

@@ -178,3 +178,15 @@ def test_what_runs_say_is_no_command_for_the_terminal(many: Path) -> None:
     (said,) = sentences(differences(shown(many), odd))
     assert said.isprintable() and len(said) < 10_000
     assert "in the second run steps: \ufffd[2J\ufffdxyyy" in said and "more characters" in said
+
+
+def test_an_end_that_is_a_failure_is_another_one(run: dict[str, Any]) -> None:
+    ended = {"word": "finished", "reason": "", "final": ["Over"]}
+    one = {**run, "verdict": {**ended, "failed": ["{ x = 1 }"]}}
+    other = {**run, "verdict": {**ended, "failed": []}}
+    found = differences(one, other)["end"]
+    assert found["what"] == [
+        "finished, with a token in Over, a failure: { x = 1 }",
+        "finished, with a token in Over",
+    ]
+    assert differences(other, other)["end"] is None

@@ -71,7 +71,7 @@ def parse(texts: Iterable[str], cell: RobotCell, around: float) -> tuple[Free, .
     """
     found: dict[tuple[str, str], Free] = {}
     for text in texts:
-        robot, keys = _named(text, cell)
+        robot, keys = _named(text, [r.name for r in cell.robots])
         for part in keys.split(","):
             one = _one(text, robot, part, cell, around)
             if (robot, one.key) in found:
@@ -82,20 +82,35 @@ def parse(texts: Iterable[str], cell: RobotCell, around: float) -> tuple[Free, .
     return tuple(sorted(found.values(), key=lambda f: (order[f.robot], keys_.index(f.key))))
 
 
-def _named(text: str, cell: RobotCell) -> tuple[str, str]:
+def expect_known(texts: Iterable[str], robots: Sequence[str]) -> None:
+    """Looks at what can be said before anything is known of the arms.
+
+    Args:
+        texts: as for `parse`.
+        robots: those of cell.toml.
+
+    Raises:
+        FreeError: a text is malformed, or names neither robot nor key.
+    """
+    for text in texts:
+        _, keys = _named(text, robots)
+        for part in keys.split(","):
+            _key(text, part)
+
+
+def _named(text: str, names: Sequence[str]) -> tuple[str, str]:
     robot, dot, rest = text.partition(".base.")
     if not dot or not rest:
         raise FreeError(
             f"`{text}` is not of the form ROBOT.base.KEY[=LOW:HIGH][,KEY...], as in robot2.base.x,y=7:9,yaw"
         )
-    names = [r.name for r in cell.robots]
     if robot not in names:
         hint = did_you_mean(robot, names) or f"known are {', '.join(f'`{n}`' for n in names)}"
         raise FreeError(f"the cell has no robot `{robot}` with an arm; {hint}")
     return robot, rest
 
 
-def _one(text: str, robot: str, part: str, cell: RobotCell, around: float) -> Free:
+def _key(text: str, part: str) -> re.Match[str]:
     match = _PART.fullmatch(part.strip())
     if match is None:
         raise FreeError(f"`{part.strip()}` in `{text}` is not of the form KEY or KEY=LOW:HIGH")
@@ -103,6 +118,12 @@ def _one(text: str, robot: str, part: str, cell: RobotCell, around: float) -> Fr
     if key not in KEYS:
         hint = did_you_mean(key, KEYS) or f"known are {', '.join(KEYS)}"
         raise FreeError(f"a base has no key `{key}`; {hint}")
+    return match
+
+
+def _one(text: str, robot: str, part: str, cell: RobotCell, around: float) -> Free:
+    match = _key(text, part)
+    key = match["key"]
     here = float(getattr(cell.robot(robot).base, KEYS[key]))
     if key not in LENGTHS:
         here = math.degrees(here)

@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
+from pn2code.base.how_far import counted
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ir import nodes as ir
@@ -96,7 +97,8 @@ class _Lowering:
         transitions: list[ir.Transition | None] = []
         if not self._failed:
             transitions = [
-                self._guarded(t.origin, partial(self._transition, t)) for t in self._net.transitions
+                self._guarded(t.origin, partial(self._transition, t))
+                for t in counted(self._net.transitions, "translating transitions")
             ]
         predicates = [
             self._guarded(p.exp.span.origin, partial(self._predicate, p)) for p in self._predicates

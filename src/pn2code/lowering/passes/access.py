@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from pn2code.base.how_far import counted
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Rep
 from pn2code.ir.printed import printed_parts
@@ -20,7 +21,8 @@ from pn2code.lowering.passes.moves import is_count, is_pair
 
 def with_access(net: ir.NetIR) -> ir.NetIR:
     """The net, with what this pass finds; all of how places are kept and occurrences are printed is known."""
-    return replace(net, transitions=tuple(_transition(net, t) for t in net.transitions))
+    transitions = counted(net.transitions, "what transitions need")
+    return replace(net, transitions=tuple(_transition(net, t) for t in transitions))
 
 
 def _transition(net: ir.NetIR, t: ir.Transition) -> ir.Transition:

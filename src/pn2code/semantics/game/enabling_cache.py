@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, effects_of
-from pn2code.semantics.game.enabling import Enabling
+from pn2code.semantics.game.enabling import Enabling, GameError
 from pn2code.semantics.game.marking import Binding, Marking, PlaceMarking
 
 _EXAMINED = (ArcKind.INPUT, ArcKind.BOTH, ArcKind.INHIBITOR)
@@ -63,10 +63,23 @@ class EnablingCache:
             self._possible[t.index] = marking.time, [marking.places[i] for i in places], found
         return found
 
-    def best(self, ordered: Iterable[FlatTransition], marking: Marking) -> list[FlatTransition]:
+    def best(
+        self,
+        ordered: Iterable[FlatTransition],
+        marking: Marking,
+        raising: dict[int, GameError] | None = None,
+    ) -> list[FlatTransition]:
         """Of transitions in the order of their priorities those that are enabled and have the best one.
 
         After a step only what its places can have changed is looked at again.
+
+        Args:
+            ordered: the transitions.
+            marking: where.
+            raising: gets the transitions of which an inscription raises an exception, which then count as not enabled.
+
+        Raises:
+            GameError: an inscription raises an exception, and `raising` is not given.
         """
         self._go_to(marking)
         found: list[FlatTransition] = []
@@ -75,7 +88,16 @@ class EnablingCache:
                 break
             index = t.index
             if index in self._open or index in self._always:
-                self._is_enabled[index] = self.is_enabled(t, marking)
+                try:
+                    self._is_enabled[index] = self.is_enabled(t, marking)
+                except GameError as error:
+                    if raising is None:
+                        raise
+                    raising[index] = error
+                    self._is_enabled[index] = (
+                        False  # and it stays open: whoever asks again gets the exception
+                    )
+                    continue
                 self._open.discard(index)
             if self._is_enabled[index]:
                 found.append(t)

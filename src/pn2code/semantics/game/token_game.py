@@ -208,6 +208,18 @@ class Game:
         self._enter(marking)
         return self._enabling_cache.best(self._by_priority, marking)
 
+    def enabled_or_raising(
+        self, marking: Marking
+    ) -> tuple[list[FlatTransition], dict[int, GameError]]:
+        """The same, where an inscription may raise an exception: the transitions of which one does, and which.
+
+        The simulator of CPN Tools stops when it looks at such a transition; before that others may occur.
+        """
+        self._enter(marking)
+        raising: dict[int, GameError] = {}
+        found = self._enabling_cache.best(self._by_priority, marking, raising)
+        return found, raising
+
     def why_disabled(
         self, marking: Marking, element: BindingElement, *, priorities: bool = True
     ) -> str | None:

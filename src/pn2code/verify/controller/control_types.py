@@ -320,6 +320,13 @@ class Control:
         own, other = self._dead(cell), self._dead(net)
         return sorted(own - other), sorted(other - own)
 
+    @property
+    def dead(self) -> list[int] | None:
+        """Transitions that never occur in the cell as it runs; None: nobody knows."""
+        if self.found is None or not self.found.complete or self.running is None:
+            return None
+        return sorted(self._dead(self.found))
+
     def _dead(self, found: Exploration) -> set[int]:
         """Those of the cell's net; further ones are steps of the model."""
         assert self.running is not None
@@ -338,9 +345,9 @@ class Control:
                 for p, b in zip(places, found.bounds, strict=False)
             ]
         dead = None
-        if found is not None and found.complete and running is not None:
+        if self.dead is not None and running is not None:
             names = EngineNames(running.partition.net)
-            dead = [names.transition(i) for i in sorted(self._dead(found))]
+            dead = [names.transition(i) for i in self.dead]
         return {
             "modelled": running is not None,
             "why": self.why or None,

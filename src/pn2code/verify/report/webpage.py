@@ -75,6 +75,7 @@ def webpage(
     channel_model: Sequence[Mapping[str, Any]] = (),
     subject: Sequence[tuple[str, str, str]] = (),
     remark: str = "",
+    notes: Sequence[str] = (),
     counts: Counts | None = None,
     deadline: Deadline = NEVER,
 ) -> str:
@@ -91,13 +92,14 @@ def webpage(
         subject: what was looked at: what it is, its name, its SHA-256 or value.
         counts: how all answers have come out; None: as these answers to properties.
         remark: why the subject lacks something; "": it does not.
+        notes: what is no failure, and to be said beside a yes.
         deadline: when it is over no run is played any more.
     """
     player = _Player(net, storage, deadline)
     tables: dict[str, Sequence[Mapping[str, Any]]] = {
+        "Properties": [_property(player, a) for a in answers],
         "Controller checks": list(control_text.rows(control)) if control else [],
         "Medium": list(channel_model),
-        "Properties": [_property(player, a) for a in answers],
     }
     counts = counts or Counts.of(map(kind_of, answers))
     fair = [f"`{a.about.name}`: {', '.join(a.about.fair)}" for a in answers if a.about.fair]
@@ -110,7 +112,11 @@ def webpage(
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",
         what="Verification" if any(tables.values()) else "State space",
-        verdicts=[*_summary(tables), *_verdicts(net, found, counts)],
+        verdicts=[
+            *_summary(tables),
+            *_verdicts(net, found, counts),
+            *({"kind": "open", "text": x.replace("`", "")} for x in notes),
+        ],
         tables=tables,
         subject=list(subject),
         remark=remark,

@@ -1,0 +1,58 @@
+"""Warnings that somebody has looked at and accepts, with the reason: `[[accept]]` of cell.toml.
+
+    rule = Rule("robot-choice", ("Robot1'Put", "Robot1'Take"), "Put is more urgent", origin)
+    rule.accepts(item)      # a warning with this code, about exactly these elements
+
+Elements are named as the message names them: `PAGE'NAME`, or the name alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from pn2code.base.frozen import frozen
+from pn2code.diagnostics.diagnostic import Diagnostic, Severity
+from pn2code.diagnostics.origin import Origin
+
+_NAME = re.compile(r"`([^`]*)`")
+
+
+@frozen
+class Rule:
+    """What is accepted.
+
+    Args:
+        code: of the warnings.
+        elements: what they are about: all of it, in any order.
+        reason: why that is well.
+        origin: where it stands.
+    """
+
+    code: str
+    elements: tuple[str, ...]
+    reason: str
+    origin: Origin
+
+    def accepts(self, item: Diagnostic) -> bool:
+        """Whether it is about this warning."""
+        if item.severity is not Severity.WARNING or item.code != self.code:
+            return False
+        about = [{name, name.partition("'")[2] or name} for name in elements(item)]
+        return len(about) == len(self.elements) and all(
+            any(own in names for names in about) for own in self.elements
+        )
+
+
+def elements(item: Diagnostic) -> tuple[str, ...]:
+    """What a diagnostic is about, each element once: that of its place, and those of its notes."""
+    origins = [item.origin, *(n.origin for n in item.notes if n.origin is not None)]
+    return tuple(dict.fromkeys(_called(origins)))
+
+
+def _called(origins: Iterable[Origin]) -> Iterator[str]:
+    for at in origins:
+        words = _NAME.findall(at.element) or ([at.element] if at.element else [])
+        if words:
+            page = f"{at.page}'" if at.page else ""
+            yield page + " -> ".join(words)

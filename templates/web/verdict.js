@@ -1,0 +1,39 @@
+// @ts-check
+/** How a run has ended, as a chip. */
+
+import { loopOf } from "./course.js";
+import { el } from "./dom.js";
+
+/** How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
+const GOOD = new Set(["finished", "steps", "cut"]);
+/** @type {Record<string, Record<string, string>>} */
+const WORDS = {
+  seconds: { steps: "more would be possible", cut: "shown in part" },
+  steps: {
+    finished: "nothing more is possible", steps: "more would be possible", cut: "shown in part", until: "more would be possible later",
+    breakpoint: "ended at a breakpoint", evidence: "ends with what it shows", replay: "ended by its trace",
+  },
+};
+
+/**
+ * Whether a run that has come to its end has done so where that means failure.
+ * @param {any} verdict
+ */
+export const hasFailed = (verdict) => Boolean(verdict.failed?.length);
+
+/**
+ * Nothing where it has not ended.
+ * @param {any} run
+ */
+export function chipOf({ verdict, course, clock }) {
+  const word = course.refused ? "not possible" : loopOf(course) === null ? WORDS[clock]?.[verdict.word] ?? verdict.word
+    : `repeated for ever from step ${course.loop + 1} on`;
+  if (!word) return undefined;
+  const isBad = course.refused || verdict.word === "error" || hasFailed(verdict) || (clock === "seconds" && !GOOD.has(verdict.word));
+  const kind = isBad ? "bad" : clock === "seconds" ? "good" : "plain";
+  // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
+  const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
+  const text = places ? `${word} in ${places}` : word;
+  const why = (verdict.failed ?? []).filter((/** @type {string} */ x) => !verdict.final.includes(x));
+  return el("span", { class: `chip ${kind}`, text, title: [verdict.reason, ...why].filter(Boolean).join("; ") });
+}
