@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers.browser import launched, opened
+from helpers.browser import WHOLE, launched, opened
 from helpers.door_cell import NET, TOML, door_cell
 from helpers.lively import Person, running, token_of
 from helpers.processes import pn2code
@@ -108,7 +108,7 @@ def test_a_broken_zone_is_lit_on_the_page_when_it_is_broken(tmp_path: Path) -> N
     assert [z.get("broken") for z in described["cell"]["zones"]] == [broken.described(), None]
     file = tmp_path / "replay.html"
     file.write_text(page(described), encoding="utf-8")
-    with launched() as browser, opened(browser, viewport=SMALL) as shown:
+    with launched(WHOLE) as browser, opened(browser, viewport=SMALL) as shown:
         shown.open(file)
         shown.ask("() => replay.seek(0)")
         assert shown.ask(LABELS) == ["front ≤ 200 mm/s", "far"]

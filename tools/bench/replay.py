@@ -3,11 +3,11 @@
     ./dev bench --replay                    # runs the riveting cell before, in PyBullet
     ./dev bench --replay-of run             # of a run that is there
 
-In headless Chromium, 1280 x 720, without a GPU, which draws the arms with SwiftShader and the page by itself; also, as
-the tests do it, with all of the page drawn by SwiftShader. The first picture is the beginning of the frame after the
-one in which the arms were drawn first, from the start of the navigation, that is with reading the file. A frame counts
-if arms were drawn in it. For memory the page plays for `--minutes` by its own clock, which is told how late it is, ten
-pictures a second, over and over; garbage is collected before each look.
+In headless Chromium, 1280 x 720, without a GPU, which draws the arms with SwiftShader and the page by itself, as
+the tests do it; also with all of the page drawn by SwiftShader. The first picture is the beginning of the frame after
+the one in which the arms were drawn first, from the start of the navigation, that is with reading the file. A frame
+counts if arms were drawn in it. For memory the page plays for `--minutes` by its own clock, which is told how late it
+is, ten pictures a second, over and over; garbage is collected before each look.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from helpers.browser import PLAIN, launched, opened
+from helpers.browser import WHOLE, launched, opened
 
 FIRST_S = 2.0
 FRAMES = 15.0
@@ -92,11 +92,11 @@ def measure(folder: Path | None, repeat: int, minutes: int) -> int:
     cores, load = os.cpu_count() or 1, os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="pn2code-replay-") as name:
         page = folder / "replay.html" if folder is not None else _run(Path(name))
-        with launched(PLAIN) as browser:
+        with launched() as browser:
             begun = [_first(browser, page) for _ in range(repeat)]
             smooth = [_smooth(browser, page) for _ in range(max(repeat // 3, 1))]
             looks = _memory(browser, page, minutes)
-        with launched() as browser:
+        with launched(WHOLE) as browser:
             whole = [_smooth(browser, page) for _ in range(max(repeat // 3, 1))]
         size = page.stat().st_size
     firsts, works = [s for s, _ in begun], [w for _, w in begun]

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: 
 from tools.bench.replay import work
 
 from helpers import netbuilder
-from helpers.browser import PLAIN, launched, opened
+from helpers.browser import launched, opened
 from helpers.played import served
 
 DRIVER = "node"
@@ -85,7 +85,7 @@ def measure(clicks: int = CLICKS) -> int:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sixty.cpn"
         netbuilder.write(net(), file)
-        with served(file) as server, launched(PLAIN) as browser, opened(browser) as page:
+        with served(file) as server, launched() as browser, opened(browser) as page:
             page.page.goto(server.url)
             page.page.wait_for_selector("body[data-ready=true]")
             page.ask("() => play.page.net.pin(1)")

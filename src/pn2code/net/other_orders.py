@@ -33,7 +33,7 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.ml.core.terms import Con, Exp, Lit, PLit, PRecord, PVar, PWild, Symbol, Var
+from pn2code.ml.core.terms import Con, Exp, Lit, Pat, PLit, PRecord, PVar, PWild, Symbol, Var
 from pn2code.ml.core.terms import Sequence as Several
 from pn2code.ml.core.types import BOOL, INT
 from pn2code.ml.library.datatypes import TRUE
@@ -212,36 +212,44 @@ class _Maker:
 
     def _outside_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         sources: list[_Source] = []
+        for i, pattern, value in self._equations(t):
+            names = frozenset(pattern_variables(pattern)) & frozenset(t.variables)
+            variables = self._restricted(t, names, value)
+            needed = self._needed(t, value)
+            if not variables or needed & names:
+                continue
+            sources = sources or list(self._sources(t))
+            ways = _ways(needed, [s for s in sources if s.guard != i])
+            question = Question(t.index, t.guards[i], t.guards[i], "outside")
+            if ways is None:
+                yield None, question
+                continue
+            for way in ways:
+                others = self._known_beside(t, i, names.union(*(s.binds for s in way)))
+                e = outside(pattern, value, variables, others)
+                yield self._transition(t, way, e), question
+
+    def _equations(self, t: FlatTransition) -> Iterator[tuple[int, Pat, Exp]]:
+        """The guards that are equations, by number, in each direction in which they may bind variables."""
         for i, guard in enumerate(t.guards):
             sides = binary(guard, ("=",))
             for side, value in (sides, sides[::-1]) if sides is not None else ():
                 pattern = self._reader.pattern(side)
-                names = frozenset(pattern_variables(pattern)) & frozenset(t.variables)
-                variables = sorted(
-                    (
-                        s
-                        for s in names
-                        if is_restricted(s.colset) and not self._is_held(t, s, value)
-                    ),
-                    key=lambda s: s.uid,
-                )
-                needed = self._needed(t, value)
-                if pattern is None or not variables or needed & names:
-                    continue
-                sources = sources or list(self._sources(t))
-                ways = _ways(needed, [s for s in sources if s.guard != i])
-                question = Question(t.index, guard, guard, "outside")
-                if ways is None:
-                    yield None, question
-                for way in ways or ():
-                    known = names.union(*(s.binds for s in way))
-                    others = [
-                        g
-                        for j, g in enumerate(t.guards)
-                        if j != i and self._needed(t, g) <= known and not self._raising.raise_in(g)
-                    ]
-                    e = outside(pattern, value, variables, others)
-                    yield self._transition(t, way, e), question
+                if pattern is not None and pattern_variables(pattern):
+                    yield i, pattern, value
+
+    def _restricted(self, t: FlatTransition, names: _Names, value: Exp) -> list[Symbol]:
+        """The variables to which an equation might give a value outside their colour sets."""
+        found = [s for s in names if is_restricted(s.colset) and not self._is_held(t, s, value)]
+        return sorted(found, key=lambda s: s.uid)
+
+    def _known_beside(self, t: FlatTransition, i: int, known: _Names) -> list[Exp]:
+        """The guards beside the one of that number that are known, and do not raise an exception."""
+        return [
+            guard
+            for j, guard in enumerate(t.guards)
+            if j != i and self._needed(t, guard) <= known and not self._raising.raise_in(guard)
+        ]
 
     def _is_held(self, t: FlatTransition, s: Symbol, value: Exp) -> bool:
         """Whether a value outside is nothing to CPN Tools either: a token with it is wanted, and there is none."""
@@ -271,23 +279,16 @@ class _Maker:
         return [e for e in texts if self._raising.raise_in(e)]
 
     def _sources(self, t: FlatTransition) -> Iterator[_Source]:
-        found: set[Symbol] = set()
         for i, arc in enumerate(t.arcs):
             if arc.kind not in TAKING or arc.inscription is None:
                 continue
             for j, term in enumerate(arc.inscription.terms):
                 names = frozenset(pattern_variables(term.pattern))
                 if names:
-                    found |= names
                     yield _Source(BindTerm(i, j), names, self._needed(t, term.delay) - names)
-        for i, guard in enumerate(t.guards):
-            sides = binary(guard, ("=",))
-            for side, value in (sides, sides[::-1]) if sides is not None else ():
-                pattern = self._reader.pattern(side)
-                names = frozenset(pattern_variables(pattern))
-                if pattern is not None and names:
-                    found |= names
-                    yield _Source(BindEquation(i, pattern, value), names, self._needed(t, value))
+        for i, pattern, value in self._equations(t):
+            names = frozenset(pattern_variables(pattern))
+            yield _Source(BindEquation(i, pattern, value), names, self._needed(t, value))
         for step in t.plan:
             if isinstance(step, BindAll):
                 yield _Source(step, frozenset({step.symbol}), frozenset())

@@ -32,7 +32,7 @@ CAPS = ((0, 1, 4, 5), (1, 2, 3, 4), (0, 5, 6, 7))
 
 @pytest.fixture
 def fewer_tries(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pieces cover a mesh after any number of tries; with more they are less too large."""
+    """Pieces cover a mesh after any number of tries; with more they are less too large (`test_meshes_with_pockets`)."""
     monkeypatch.setattr(convex_pieces, "_TRIES", amount(2, 8))
 
 
@@ -149,7 +149,7 @@ def test_what_is_not_closed_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.bullet
 @pytest.mark.parametrize("hulls", [1, 4])
-def test_a_part_stands_in_a_pocket(hulls: int, tmp_path: Path) -> None:
+def test_a_part_stands_in_a_pocket(hulls: int, tmp_path: Path, fewer_tries: None) -> None:
     """PyBullet measures to the pieces, and it stands on the floor of the pocket, also as a part or a link."""
     trough(tmp_path)
     data = tomllib.loads(TOML)
@@ -193,7 +193,7 @@ def with_tool(folder: Path, hulls: str, d: Diagnostics) -> RobotCell | None:
 
 
 @pytest.mark.bullet
-def test_a_link_of_several_pieces(tmp_path: Path) -> None:
+def test_a_link_of_several_pieces(tmp_path: Path, fewer_tries: None) -> None:
     """PyBullet measures to a collision mesh of a tool by its pieces: what is in its pocket is not in it."""
     trough(tmp_path)
     d = Diagnostics()
