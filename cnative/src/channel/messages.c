@@ -70,7 +70,8 @@ static bool answer_write(const pn_cell_channel_t *channel, const char *seq, char
     size_t used = 0U;
     pn_scalar_walk_t walk = { channel->scalar, channel->scalar_count, 0U, 0U, 0U, 0U };
     const pn_scalar_t *scalar = pn_scalar_next(&walk);
-    for (uint32_t i = 0U; scalar != NULL; i++) {
+    uint32_t i = 0U;
+    while (scalar != NULL) {
         const char *const word = strtok_r(NULL, " ", rest);
         if (word == NULL) {
             return false;
@@ -80,9 +81,8 @@ static bool answer_write(const pn_cell_channel_t *channel, const char *seq, char
             return true;
         }
         scalar_of(scalar, word, &scalar_value[i], &used);
-        if (scalar->kind == PN_SCALAR_LIST) {
-            pn_scalar_enter(&walk, (uint32_t)scalar_value[i].integer);
-        }
+        pn_scalar_is(&walk, &scalar_value[i]);
+        i++;
         scalar = pn_scalar_next(&walk);
     }
     const size_t length =
@@ -123,11 +123,8 @@ static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, 
             (void)printf("message -");
         }
         for (uint32_t i = 0U; i < s_message.count; i++) {
-            const pn_scalar_t *const scalar = pn_scalar_next(&walk);
-            print_scalar_value(scalar, &s_message.value[i]);
-            if (scalar->kind == PN_SCALAR_LIST) {
-                pn_scalar_enter(&walk, (uint32_t)s_message.value[i].integer);
-            }
+            print_scalar_value(pn_scalar_next(&walk), &s_message.value[i]);
+            pn_scalar_is(&walk, &s_message.value[i]);
         }
         return true;
     case PN_CHANNEL_REFUSED: (void)printf("refused %s", why[s_message.refusal]); return true;

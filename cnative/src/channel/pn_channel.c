@@ -73,41 +73,64 @@ const char *pn_quote(const char *data, size_t length, char *out, size_t capacity
     return out;
 }
 
+#ifdef PN_FLAT_TYPES /* no message has a list */
+const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk)
+{
+    const uint32_t at = walk->next;
+    walk->next += (at < walk->count) ? 1U : 0U;
+    return (at < walk->count) ? &walk->scalar[at] : NULL;
+}
+
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value)
+{
+    (void)walk;
+    (void)scalar_value;
+}
+
+static uint32_t values_left(const pn_scalar_walk_t *walk)
+{
+    return walk->count - walk->next;
+}
+#else
 const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk)
 {
     if ((walk->left > 0U) && (walk->next == walk->end)) {
         walk->left--;
         walk->next = (walk->left > 0U) ? walk->first : walk->end;
     }
-    if (walk->next == walk->count) {
-        return NULL;
+    const uint32_t at = walk->next;
+    walk->next += (at < walk->count) ? 1U : 0U;
+    return (at < walk->count) ? &walk->scalar[at] : NULL;
+}
+
+static void enter(pn_scalar_walk_t *walk, uint32_t length)
+{
+    const pn_scalar_t *const last = &walk->scalar[walk->next - 1U];
+    if (last->kind == PN_SCALAR_LIST) {
+        walk->first = walk->next;
+        walk->end = walk->next + last->element_count;
+        walk->left = length;
+        walk->next = (length > 0U) ? walk->first : walk->end;
     }
-    walk->next++;
-    return &walk->scalar[walk->next - 1U];
 }
 
-void pn_scalar_enter(pn_scalar_walk_t *walk, uint32_t length)
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value)
 {
-    walk->first = walk->next;
-    walk->end = walk->next + walk->scalar[walk->next - 1U].element_count;
-    walk->left = length;
-    walk->next = (length > 0U) ? walk->first : walk->end;
+    enter(walk, (uint32_t)scalar_value->integer);
 }
 
-/* How many values are still to come at least: lists may be empty. */
-static uint32_t values_left(pn_scalar_walk_t walk)
+/* How many values are still to come at least: other lists may be empty. */
+static uint32_t values_left(const pn_scalar_walk_t *walk)
 {
+    pn_scalar_walk_t rest = *walk;
     uint32_t count = 0U;
-    const pn_scalar_t *scalar = pn_scalar_next(&walk);
-    while (scalar != NULL) {
-        if (scalar->kind == PN_SCALAR_LIST) {
-            pn_scalar_enter(&walk, 0U);
-        }
+    while (pn_scalar_next(&rest) != NULL) {
+        enter(&rest, 0U);
         count++;
-        scalar = pn_scalar_next(&walk);
     }
     return count;
 }
+#endif
 
 /* --- writing ------------------------------------------------------------------------------------------------------ */
 
@@ -215,7 +238,8 @@ size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_sca
     size_t at = 0U;
     pn_scalar_walk_t walk = { scalar, count, 0U, 0U, 0U, 0U };
     const pn_scalar_t *own = pn_scalar_next(&walk);
-    for (uint32_t i = 0U; own != NULL; i++) {
+    uint32_t i = 0U;
+    while (own != NULL) {
         if (at + 2U >= capacity) {
             return 0U;
         }
@@ -226,10 +250,9 @@ size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_sca
         if (length == 0U) {
             return 0U;
         }
-        if (own->kind == PN_SCALAR_LIST) {
-            pn_scalar_enter(&walk, (uint32_t)scalar_value[i].integer);
-        }
+        pn_scalar_is(&walk, &scalar_value[i]);
         at += length;
+        i++;
         own = pn_scalar_next(&walk);
     }
     return at;
@@ -376,6 +399,7 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_s
     return true;
 }
 
+#ifndef PN_FLAT_TYPES
 /* How many elements a list has: decimal digits, as few as there can be. No message has as many as to need three. */
 static bool length_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
                          pn_message_t *out)
@@ -392,6 +416,8 @@ static bool length_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_sc
     }
     return true;
 }
+
+#endif
 
 static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
                        pn_message_t *out)
@@ -517,10 +543,12 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_sc
         scalar_value->kind = PN_VALUE_INT;
         good = integer_parse(scalar, word, scalar_value, out);
         break;
+#ifndef PN_FLAT_TYPES
     case PN_SCALAR_LIST:
         scalar_value->kind = PN_VALUE_LIST;
         good = length_parse(scalar, word, scalar_value, out);
         break;
+#endif
     case PN_SCALAR_INDEX:
         scalar_value->kind = PN_VALUE_ENUM;
         good = integer_parse(scalar, word, scalar_value, out);
@@ -537,6 +565,9 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_sc
         scalar_value->kind = PN_VALUE_ENUM;
         good = enum_parse(scalar, word, scalar_value, out);
         break;
+#ifdef PN_FLAT_TYPES
+    case PN_SCALAR_LIST:
+#endif
     default: refuse(out, PN_REFUSAL_SCALAR, word->column, "unknown kind of scalar"); break;
     }
     return good;
@@ -592,9 +623,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
         if (!scalar_parse(own, &word, value, out)) {
             return false;
         }
-        if (own->kind == PN_SCALAR_LIST) {
-            pn_scalar_enter(&walk, (uint32_t)value->integer);
-        }
+        pn_scalar_is(&walk, value);
         out->column_of[out->count] = (uint32_t)word.column;
         out->count++;
         i++;
@@ -603,7 +632,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
     if (own != NULL) {
         refuse(out, PN_REFUSAL_COUNT, length + 1U,
                "found %" PRIu32 " value%s where %" PRIu32 " are expected; the next would be %s", i,
-               (i == 1U) ? "" : "s", i + 1U + values_left(walk), named(own, name));
+               (i == 1U) ? "" : "s", i + 1U + values_left(&walk), named(own, name));
         return false;
     }
     return true;

@@ -17,7 +17,6 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.scalars import Scalar, ScalarKind
-from pn2code.ml.core.colsets import Colset, Kind
 
 ScalarValue = bool | int | float | str
 """BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1. LIST: its length, and
@@ -50,22 +49,6 @@ def scalars_of_json(data: Any) -> Iterator[ScalarValue]:
             yield 1  # unit
         case _:
             yield data
-
-
-def message_values(c: Colset, data: Any) -> Iterator[ScalarValue]:
-    """The same of a token of a channel, which may have lists in it."""
-    c = c.whole
-    parts = [p for p in c.components if p is not None]
-    if c.kind is Kind.LIST:
-        yield len(data)
-        for item in data:
-            yield from message_values(parts[0], item)
-    elif c.kind in (Kind.PRODUCT, Kind.RECORD):
-        items = data.values() if isinstance(data, dict) else data
-        for part, item in zip(parts, items, strict=True):
-            yield from message_values(part, item)
-    else:
-        yield from scalars_of_json(data)
 
 
 class Walk:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pn2code.channels.scalars import ScalarValue, message_values
+from pn2code.cell.token_values import message_values
+from pn2code.channels.scalars import ScalarValue
 from pn2code.ml.core.colsets import Colset
 from pn2code.semantics.values.colour_json import to_json
 from pn2code.semantics.values.data import Timed

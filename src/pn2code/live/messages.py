@@ -7,7 +7,8 @@ from typing import Any
 
 from pn2code.cell.partition import Channel, OwnerKind, Partition
 from pn2code.cell.scalars import message_scalars
-from pn2code.channels.scalars import format_scalars, message_values
+from pn2code.cell.token_values import message_values
+from pn2code.channels.scalars import format_scalars
 from pn2code.net.flat import FlatPlace
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.values.colour_json import to_json

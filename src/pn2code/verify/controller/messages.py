@@ -17,12 +17,12 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars, most_values
+from pn2code.cell.token_values import message_values
 from pn2code.channels.message import MAX_PAYLOAD, Message, compose, parse, specs_of
 from pn2code.channels.scalars import (
     MOST_VALUES,
     ScalarValue,
     format_scalars,
-    message_values,
     quote,
     scalars_of_values,
 )

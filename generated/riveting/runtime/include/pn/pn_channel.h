@@ -78,8 +78,8 @@ typedef struct pn_scalar_walk {
 
 /* The scalar of the next value; NULL at the end. */
 const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk);
-/* What pn_scalar_next gave last is a list of so many elements. */
-void pn_scalar_enter(pn_scalar_walk_t *walk, uint32_t length);
+/* The value of what it gave last: that of a list says how often its elements come. */
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value);
 
 /* The scalars separated by one blank. Returns the length; 0 when it does not fit, or when a reader would refuse a
  * scalar: it is not finite, out of its range, no constructor. */
