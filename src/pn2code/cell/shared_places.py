@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from difflib import SequenceMatcher
 from pathlib import PurePath
 
-from pn2code.cell import codes
+from pn2code.cell import codes, looked_at
 from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.owners import overlap
 from pn2code.cell.partition import Channel, ChannelKind, Owner
@@ -189,12 +189,16 @@ def _directed(
                 notes=[f"transition `{t.name}`", Note("it is a channel here", at)],
             )
         return not odd
+    says, hint = looked_at.told(net, place.index, owners, writers, readers) or (
+        f"is written by {names(writers)} and read by {names(readers)}",
+        "exactly one owner must have output arcs to it, exactly one other owner input arcs from it",
+    )
     d.error(
         codes.CHANNEL_DIRECTION,
-        f"channel `{place.name}` is written by {names(writers)} and read by {names(readers)}",
+        f"channel `{place.name}` {says}",
         place.origins[0],
         notes=[Note("it is a channel here", at)],
-        hint="exactly one owner must have output arcs to it, exactly one other owner input arcs from it",
+        hint=hint,
     )
     return False
 
