@@ -125,8 +125,7 @@ def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
         case core.Select(label, record):
             return parts_of(_source(record, taken)).get(label)
         case core.If(_, then, otherwise):
-            one, other = _source(then, taken), _source(otherwise, taken)
-            return one if one == other else None
+            return _either(_source(then, taken), _source(otherwise, taken))
         case core.Apply(core.Builtin("List.tl"), of):
             return _longer(_source(of, taken), -1)
         case core.Apply(core.Builtin("List.rev"), of):
@@ -141,6 +140,18 @@ def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
             return _longer(rest, 1) if is_same else None
         case _:
             return None
+
+
+def _either(a: Colset | None, b: Colset | None) -> Colset | None:
+    """The colour set of values that are in one of two, where it can be told: the same, or lists of the same items."""
+    if a == b or a is None or b is None:
+        return a if a == b else None
+    one, other = a.whole, b.whole
+    if one.kind is not Kind.LIST or one.components != other.components or one.kind != other.kind:
+        return None
+    low = min(x.low if isinstance(x.low, int) else 0 for x in (one, other))
+    highs = [x.high for x in (one, other) if isinstance(x.high, int)]
+    return replace(one, name="", low=low, high=max(highs) if len(highs) == 2 else None)
 
 
 def _longer(c: Colset | None, by: int) -> Colset | None:
