@@ -625,8 +625,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
         }
         pn_scalar_is(&walk, value);
 #ifndef PN_FLAT_TYPES
-        if ((value->kind == PN_VALUE_LIST)
-            && (out->count + 1U + values_left(&walk) > PN_CHANNEL_SCALARS)) {
+        if ((value->kind == PN_VALUE_LIST) && (out->count + 1U + values_left(&walk) > PN_CHANNEL_SCALARS)) {
             refuse(out, PN_REFUSAL_COUNT, word.column, "%s makes more than the %u values that are possible",
                    pn_quote(word.text, word.length, shown, sizeof shown), PN_CHANNEL_SCALARS);
             return false;
