@@ -30,6 +30,21 @@ static const pn_scalar_t MEASURED[] = {
     { .kind = PN_SCALAR_STRING, .label = "s", .colset = "STRING" },
     { .kind = PN_SCALAR_REAL, .label = "x", .colset = "REAL" },
 };
+static const pn_scalar_t LISTED[] = {
+    { .kind = PN_SCALAR_INT, .label = "n", .colset = "INT" },
+    { .kind = PN_SCALAR_LIST, .label = "l", .colset = "PAIRS", .bounded = true, .high = 40, .element_count = 2U },
+    { .kind = PN_SCALAR_INT, .label = "m", .colset = "INT" },
+    { .kind = PN_SCALAR_STRING, .label = "s", .colset = "STRING" },
+    { .kind = PN_SCALAR_LIST,
+      .label = "o",
+      .colset = "NUMBERS",
+      .bounded = true,
+      .low = 1,
+      .high = INT64_MAX,
+      .element_count = 1U },
+    { .kind = PN_SCALAR_INT, .label = "k", .colset = "RANGE", .bounded = true, .low = -2, .high = 8 },
+    { .kind = PN_SCALAR_BOOL, .label = "b", .colset = "BOOL" },
+};
 static const pn_scalar_t UNKNOWN[] = { { .kind = (pn_scalar_kind_t)99, .label = "odd", .colset = "ODD" } };
 
 #define OUT(name, count, scalars) \
@@ -38,6 +53,7 @@ static const pn_scalar_t UNKNOWN[] = { { .kind = (pn_scalar_kind_t)99, .label = 
 static const pn_cell_channel_t CHANNEL[] = {
     OUT("all", 11U, SCALARS),  OUT("text", 2U, &SCALARS[9]),  OUT("unknown", 1U, UNKNOWN),
     OUT("many", 65U, SCALARS), OUT("numbered", 2U, NUMBERED), OUT("measured", 2U, MEASURED),
+    OUT("listed", 7U, LISTED),
 };
 
-const pn_cell_t pn_cell = { .channel_count = 6U, .channel = CHANNEL };
+const pn_cell_t pn_cell = { .channel_count = 7U, .channel = CHANNEL };

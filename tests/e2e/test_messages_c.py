@@ -28,7 +28,7 @@ from pn2code.verify.controller.messages import longest
 
 pytestmark = pytest.mark.cc
 
-CHANNELS = 60
+CHANNELS = 90
 SIMPLE = (
     "unit", "bool", "int", "int with ~3..4", "int with 0..0", "real", "real with ~1.5..2.5", "string",
     "with red | green | blue | e1", "index ph with 0..5", "intinf", "int with 1..9",
@@ -41,11 +41,25 @@ def declarations(chance: random.Random) -> tuple[str, list[str]]:
     for name, kind in zip(names, SIMPLE, strict=True):
         lines.append(f"colset {name} = {kind.replace('ph', 'p' + name)};")
     size = dict.fromkeys(names, 1)
+    has_list: set[str] = set()
     while len(names) < CHANNELS:
         name, parts = f"C{len(names)}", chance.choices(names, k=chance.choice([1, 2, 3, 3, 6, 8]))
+        if chance.random() < 0.4:
+            if parts[0] in has_list:
+                continue  # no message holds a list of lists
+            size[name] = 1
+            has_list.add(name)
+            bounds = chance.choice(["", "", " with 0..2", " with 1..3", " with 0..40"])
+            if bounds == " with 1..3":
+                size[name] += size[parts[0]]
+            lines.append(f"colset {name} = list {parts[0]}{bounds};")
+            names.append(name)
+            continue
         size[name] = sum(size[p] for p in parts)
         if size[name] > MOST_SCALARS:
             continue
+        if has_list.intersection(parts):
+            has_list.add(name)
         text = (
             "product " + " * ".join(parts)
             if len(parts) > 1 and chance.random() < 0.5
@@ -122,11 +136,40 @@ def value(scalar: Scalar, chance: random.Random) -> ScalarValue:
             return number(scalar, chance)
 
 
+def values_of(scalars: tuple[Scalar, ...], chance: random.Random) -> tuple[ScalarValue, ...]:
+    """Of a message, whose lists have any length, sometimes an impossible one."""
+    found: list[ScalarValue] = []
+    for s in scalars:
+        if s.kind is ScalarKind.LIST:
+            most = 4 if s.high is None else s.high
+            length = chance.choice([0, 0, 1, 1, 2, 3, int(most), int(most) + 1])
+            found.append(length)
+            for _ in range(length):
+                found += values_of(s.elements, chance)
+        else:
+            found.append(value(s, chance))
+    return tuple(found)
+
+
+def is_legal(scalars: tuple[Scalar, ...], values: Iterator[ScalarValue]) -> bool:
+    """Whether all numbers are in their ranges, and all lists as long as they may be."""
+    legal = True
+    for s in scalars:
+        v = next(values)
+        if s.kind in (ScalarKind.INT, ScalarKind.INDEX, ScalarKind.LIST):
+            legal &= s.low is None or v >= s.low  # type: ignore[operator]
+            legal &= s.high is None or v <= s.high  # type: ignore[operator]
+        if s.kind is ScalarKind.LIST:
+            for _ in range(int(v)):
+                legal &= is_legal(s.elements, values)
+    return legal
+
+
 def test_both_sides_write_the_same(both: tuple[Partition, Codec]) -> None:
     partition, compiled = both
     specs, chance = specs_of(partition), random.Random(1)
     messages = [
-        (i, chance.choice([1, 7, MOST_SEQ]), tuple(value(s, chance) for s in spec.scalars))
+        (i, chance.choice([1, 7, MOST_SEQ]), values_of(spec.scalars, chance))
         for i, spec in enumerate(specs)
         for _ in range(40)
     ]
@@ -152,7 +195,7 @@ def test_both_sides_read_the_same(both: tuple[Partition, Codec]) -> None:
     files: list[tuple[int, int, bytes]] = []
     while len(files) < 4000:
         i = chance.randrange(len(specs))
-        values = tuple(value(s, chance) for s in specs[i].scalars)
+        values = values_of(specs[i].scalars, chance)
         text = compose(
             specs[i],
             values,
@@ -198,14 +241,9 @@ def test_a_bound_that_colour_sets_prove_is_one(both: tuple[Partition, Codec]) ->
             continue
         proven += 1
         for _ in range(20):
-            values = tuple(value(s, chance) for s in spec.scalars)
+            values = values_of(spec.scalars, chance)
             text = compose(spec, values, seq=1, session=SESSION)
-            legal = all(
-                s.kind is not ScalarKind.INT
-                and s.kind is not ScalarKind.INDEX
-                or ((s.low is None or v >= s.low) and (s.high is None or v <= s.high))  # type: ignore[operator]
-                for s, v in zip(spec.scalars, values, strict=True)
-            )
+            legal = is_legal(spec.scalars, iter(values)) and len(values) <= MOST_SCALARS
             assert (text is not None) == legal
             assert text is None or len(text.split("\n")[0]) <= most
             assert compiled.write([(i, 1, values)]) == [None if text is None else text.encode()]

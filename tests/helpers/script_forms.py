@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from random import Random
 
@@ -198,6 +199,30 @@ FORMS = (
     "6 div n",
     "6 mod n + 6 div (j - 1)",
 )
+LIST_FORMS = (
+    "hd (if n = 0 then [] else [n, j])",
+    "length (tl (if n > 0 then [1, n] else []))",
+    "List.nth ([4, 5, 6], n)",
+    "List.nth (if j > 0 then [n] else [], n)",
+    "let val l = if n = 0 then [] else [n] val h = hd l in if n = 0 then 7 else h end",
+    "let val _ = tl (if n = 1 then [] else [n]) in j end",
+    "let val l = [6 div n, j] in length l end",
+    "length [6 div n]",
+    "case [n, j] of [] => 0 | x :: _ => 6 div x",
+    "case (if n > 0 then [j] else []) of [x] => x | [] => 5 | x :: y :: _ => y",
+    "case (if n > 0 then [n, j] else [n]) of [0] => 9 | x :: 1 :: r => length r + x | l => length l",
+    "if null (rev [n]) then 1 else hd (rev (n :: [j, 2]))",
+    "length ([n] ^^ (if j > 0 then [1, 2] else nil)) - 3",
+    "if [n, 1] = [j, 1] then 1 else 2",
+    "if (if n > 0 then [n] else []) <> [] then 6 div (n - 1) else 1",
+    "hd (6 div n :: [])",
+    "hd (n :: [6 div j])",
+    "(hd ([] : int list)) * 0 + n",
+    "let fun h [] = 0 | h (x :: _) = 6 div x in h (if n > 0 then [j] else []) end",
+    "if hd [n, 6 div j] > 0 andalso length [6 div n] = 1 then 1 else 2",
+    "hd (tl (if n > 0 then [n, j] else [n])) + 1073741822",
+)
+"""The same with lists."""
 
 
 def script_page(site: str, form: str) -> str:
@@ -218,28 +243,75 @@ def difference(folder: Path, site: str, form: str) -> str:
     try:
         report = explore(cell.partition, cell.config, 1, checked(cell.text), game)
     except GameError:
-        assert not {"n", "j"} & set(form), "only what has no variables is looked at everywhere"
+        assert not re.search(r"\b[nj]\b", form), (
+            "only what has no variables is looked at everywhere"
+        )
         return ""
     assert report.complete or report.deviation
     return f"{report.deviation}\n{cell.body}" if report.deviation else ""
 
 
-def random_form(random: Random, depth: int = 3) -> str:
-    """An expression of type `int` with `n` and `j`."""
-    return f"({_number(random, depth, ['n', 'j'])})"
+def random_form(random: Random, depth: int = 3, lists: float = 0.0) -> str:
+    """An expression of type `int` with `n` and `j`; `lists`: how often it looks at a list."""
+    return f"({_number(random, depth, ['n', 'j'], lists)})"
 
 
-def _number(random: Random, depth: int, names: list[str]) -> str:
-    if depth == 0:
+def _list(random: Random, depth: int, names: list[str]) -> str:
+    """A list of numbers."""
+
+    def number() -> str:
+        return _number(random, depth - 1, names, _LISTS)
+
+    def more() -> str:
+        return _list(random, depth - 1, names)
+
+    if depth <= 0:
+        return random.choice(["([] : int list)", f"[{number()}]", f"[{number()}, {number()}]"])
+    return random.choice(
+        [
+            lambda: f"[{number()}, {number()}]",
+            lambda: f"({number()} :: {more()})",
+            lambda: f"tl ({more()})",
+            lambda: f"rev ({more()})",
+            lambda: f"({more()} ^^ {more()})",
+            lambda: f"(if {_truth(random, depth - 1, names)} then {more()} else {more()})",
+            lambda: f"(case {more()} of _ :: r => r | l => l)",
+        ]
+    )()
+
+
+_LISTS = 0.4
+
+
+def _number(random: Random, depth: int, names: list[str], lists: float = 0.0) -> str:
+    if depth <= 0:
         return random.choice([*names, *names, "0", "1", "2", "6"])
 
     def number(extra: tuple[str, ...] = ()) -> str:
-        return _number(random, depth - 1, [*names, *extra])
+        return _number(random, depth - 1, [*names, *extra], lists)
 
     def truth() -> str:
         return _truth(random, depth - 1, names)
 
     own = f"x{len(names)}"
+
+    def items() -> str:
+        return _list(random, depth - 1, names)
+
+    if random.random() < lists:
+        return random.choice(
+            [
+                lambda: f"length ({items()})",
+                lambda: f"hd ({items()})",
+                lambda: f"List.nth ({items()}, {number()})",
+                lambda: f"(case {items()} of [] => {number()} | {own} :: _ => {number((own,))})",
+                lambda: (
+                    f"(case {items()} of _ :: {own} :: _ => {number((own,))} | _ => {number()})"
+                ),
+                lambda: f"let val {own} = hd ({items()}) in {number((own,))} end",
+                lambda: f"(if {items()} = {items()} then {number()} else {number()})",
+            ]
+        )()
     return random.choice(
         [
             lambda: f"({number()} + {number()})",

@@ -10,7 +10,7 @@ from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import ChannelSpec, Message, Refused
 from pn2code.channels.message import compose, parse
-from pn2code.channels.scalars import ScalarValue
+from pn2code.channels.scalars import ScalarValue, scalars_of_values
 from situations import situation
 
 K = ScalarKind
@@ -32,7 +32,12 @@ ALL = ChannelSpec("all", "all.robcad", SCALARS, "a", "b", ChannelKind.DATA)
 TEXT = ChannelSpec("text", "text.robcad", SCALARS[9:], "a", "b", ChannelKind.DATA)
 NUMBERED = ChannelSpec("numbered", "", (SCALARS[9], SCALARS[6]), "a", "b", ChannelKind.DATA)
 MEASURED = ChannelSpec("measured", "", (SCALARS[9], SCALARS[8]), "a", "b", ChannelKind.DATA)
-CHANNELS = {ALL: 0, TEXT: 1, NUMBERED: 4, MEASURED: 5}
+PAIRS = Scalar(K.LIST, "l", "PAIRS", (), 0, 40, (SCALARS[6], SCALARS[9]))
+NUMBERS = Scalar(K.LIST, "o", "NUMBERS", (), 1, None, (SCALARS[5],))
+LISTED = ChannelSpec(
+    "listed", "", (SCALARS[6], PAIRS, NUMBERS, SCALARS[2]), "a", "b", ChannelKind.DATA
+)
+CHANNELS = {ALL: 0, TEXT: 1, NUMBERED: 4, MEASURED: 5, LISTED: 6}
 """With their numbers."""
 SESSION = "00000001"
 GOOD: tuple[ScalarValue, ...] = (1, 1, True, "green", 2, -2, -7, 2.5, 1 / 3, 'a "b" \\', "\x01 z")
@@ -62,8 +67,42 @@ def word(scalar: Scalar, value: ScalarValue) -> str:
 
 def written(spec: ChannelSpec, values: tuple[ScalarValue, ...], seq: int) -> str:
     return f"write {CHANNELS[spec]} {seq} " + " ".join(
-        word(s, v) for s, v in zip(spec.scalars, values, strict=True)
+        word(s, v) for s, v in zip(of_each(spec, values), values, strict=True)
     )
+
+
+def of_each(spec: ChannelSpec, values: tuple[ScalarValue, ...]) -> list[Scalar]:
+    """The scalar of each value."""
+    found = scalars_of_values(spec.scalars, values)
+    assert found is not None
+    return found
+
+
+LISTS: tuple[tuple[ScalarValue, ...], ...] = (
+    (1, 0, 1, 5, True),
+    (-1, 2, 3, "a b", 4, "", 2, -2, 8, False),
+    (0, 1, 0, '"', 3, 0, 0, 0, False),
+)
+
+
+@situation
+def lists_are_written_alike(lab: Lab) -> None:
+    cases: list[tuple[ScalarValue, ...]] = [
+        *LISTS,
+        (1, 0, 0, True),  # one element at least
+        (1, 0, 1, 9, True),  # an element out of its range
+        *((7, n, *(1, "") * n, 1, 1, True) for n in (29, 30, 31, 40, 41)),
+        *((7, 0, n, *(1,) * n, True) for n in (60, 61, 62, 70)),
+        (7, 2, 1, "x" * 4020, 2, "", 1, 1, True),
+        (7, 2, 1, "x" * 4050, 2, "", 1, 1, True),
+    ]
+    answers = ask(lab, *(written(LISTED, values, 7) for values in cases))
+    for values, answer in zip(cases, answers, strict=True):
+        expected = compose(LISTED, values, seq=7, session=SESSION)
+        assert answer == ("unwritable" if expected is None else expected.encode("latin-1").hex()), (
+            values
+        )
+    assert answers.count("unwritable") == 10
 
 
 @situation
@@ -129,6 +168,7 @@ def read_alike(lab: Lab) -> None:
     draws = random.Random(3)
     cases: list[tuple[ChannelSpec, bytes]] = [(spec, text) for spec in CHANNELS for text in EDGES]
     good = [(ALL, GOOD)] * 3 + [(TEXT, ("", "b")), (TEXT, ('" \\', "\xff"))]
+    good += [(LISTED, values) for values in LISTS]
     while len(cases) < 1500:
         spec, values = draws.choice(good)
         text = compose(
@@ -161,7 +201,7 @@ def read_alike(lab: Lab) -> None:
                 data,
                 answer,
             )
-            pairs = zip(spec.scalars, found.scalars, strict=True)
+            pairs = zip(of_each(spec, found.scalars), found.scalars, strict=True)
             expected = ["0" if s.kind is K.UNIT else word(s, v) for s, v in pairs]
             assert [canonical(w) for w in answer.split()[2:]] == expected, data
         else:
@@ -193,6 +233,11 @@ EDGES = (
     *(PLAIN.replace(b'"s"', b) for b in (b'"', b'""', b'"s', b's"', b"s", b'"s\\"', b'"\\\\"', b'"\\q"', b'"\\x4"',
                                          b'"\\x4g"', b'"\\xg4"', b'"\\x41"', b'"\\', b'"\\"', b'"\\x', b'"\\y41"',
                                          b'"a b"', b'"a"b"c"', b'"\\ "', b'"\\x41', b'"\\x4\\"')),
+    b"1 0 1 5 1", b"1 0", b"1 0 0 1", b"1 00 1 5 1", b"1 -0 1 5 1", b"1 +1 2 \"\" 1 5 1", b"1 1. 2 \"\" 1 5 1",
+    b"1 1 2 \"\" 1 5 1", b"1 1 2 \"\" 1 5", b"1 1 2 \"\" 1 5 1 1", b"1 2 2 \"\" 1 5 1", b"1 41 1", b"1 40 1",
+    b"1 999 1",
+    b"1 x 1", b"1 0 2 5 1", b"1 0 1 9 1", b"1 0 61 5", b"1 0 99 5", b"1 31 1", b"1 30 " + b"1 \"\" " * 30 + b"1 5 1",
+    b"1 31 " + b"1 \"\" " * 31 + b"1 5 1", b"1 0 60 " + b"1 " * 60 + b"1", b"1 0 61 " + b"1 " * 61 + b"1",
     b"2" + PLAIN[1:], b"1 u" + PLAIN[3:], b"1 1 true" + PLAIN[5:],
     *(PLAIN + b"\n" + b for b in (
         b"#", b"# 7", b"# 7 00000001", b"# 7 00000001 0000000", b"# 7 00000001 000000000", b"# 7 00000001 0000000g",
@@ -212,7 +257,7 @@ def questions_that_are_none(lab: Lab) -> None:
         "",
         "write",
         "write 0",
-        "read 6 1 30",
+        "read 7 1 30",
         "write 0 1 1",
         "write 3 1 1",
         "read 3 0 30",

@@ -14,12 +14,13 @@
 extern "C" {
 #endif
 
-#define PN_CELL_ABI          5U
+#define PN_CELL_ABI          6U
 #define PN_CELL_CHANNELS_MAX 128U
 #define PN_CELL_PEERS_MAX    64U
 
 /* One scalar of a token, as it is written in a file. The scalars of the place's tokens (pn_scalar_count) are the same
- * scalars seen from the net; here is what a reader needs besides: names of constructors and ranges. */
+ * scalars seen from the net; here is what a reader needs besides: names of constructors and ranges. What the elements
+ * of a list are made of comes behind it. */
 typedef enum pn_scalar_kind {
     PN_SCALAR_UNIT,   /* written 1 */
     PN_SCALAR_BOOL,   /* 0, 1 */
@@ -27,7 +28,8 @@ typedef enum pn_scalar_kind {
     PN_SCALAR_REAL,   /* decimal; `real_low`..`real_high` when `bounded` */
     PN_SCALAR_STRING, /* "in double quotes" */
     PN_SCALAR_ENUM,   /* one of `name` */
-    PN_SCALAR_INDEX   /* decimal, `low`..`high` */
+    PN_SCALAR_INDEX,  /* decimal, `low`..`high` */
+    PN_SCALAR_LIST    /* how many elements, `low`..`high`, and then these */
 } pn_scalar_kind_t;
 
 typedef struct pn_scalar {
@@ -39,6 +41,7 @@ typedef struct pn_scalar {
     double real_low, real_high;
     uint32_t name_count;
     const char *const *name;
+    uint32_t element_count; /* LIST: of the scalars behind it, those that are repeated; else 0 */
 } pn_scalar_t;
 
 typedef enum pn_channel_direction {

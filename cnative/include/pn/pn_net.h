@@ -48,7 +48,8 @@ typedef enum pn_scalar_value_kind {
     PN_VALUE_INT,
     PN_VALUE_REAL,
     PN_VALUE_STRING,
-    PN_VALUE_ENUM /* value: position of the constructor; also unit (0) and index (its number) */
+    PN_VALUE_ENUM, /* value: position of the constructor; also unit (0) and index (its number) */
+    PN_VALUE_LIST  /* value: how many elements; their values follow */
 } pn_scalar_value_kind_t;
 
 typedef struct pn_scalar_value {

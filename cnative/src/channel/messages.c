@@ -68,12 +68,22 @@ static bool answer_write(const pn_cell_channel_t *channel, const char *seq, char
     static char file[PN_CHANNEL_TEXT];
     pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     size_t used = 0U;
-    for (uint32_t i = 0U; i < channel->scalar_count; i++) {
+    pn_scalar_walk_t walk = { channel->scalar, channel->scalar_count, 0U, 0U, 0U, 0U };
+    const pn_scalar_t *scalar = pn_scalar_next(&walk);
+    uint32_t i = 0U;
+    while (scalar != NULL) {
         const char *const word = strtok_r(NULL, " ", rest);
         if (word == NULL) {
             return false;
         }
-        scalar_of(&channel->scalar[i], word, &scalar_value[i], &used);
+        if (i >= PN_CHANNEL_SCALARS) {
+            (void)printf("unwritable");
+            return true;
+        }
+        scalar_of(scalar, word, &scalar_value[i], &used);
+        pn_scalar_is(&walk, &scalar_value[i]);
+        i++;
+        scalar = pn_scalar_next(&walk);
     }
     const size_t length =
         pn_channel_compose(channel, scalar_value, strtoull(seq, NULL, 10), SESSION, file, sizeof file);
@@ -103,6 +113,7 @@ static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, 
     static char file[PN_CHANNEL_TEXT];
     const char *const hex = strtok_r(NULL, " ", rest);
     const size_t length = from_hex((hex != NULL) ? hex : "", file, sizeof file);
+    pn_scalar_walk_t walk = { channel->scalar, channel->scalar_count, 0U, 0U, 0U, 0U };
     switch (pn_channel_parse(channel, file, length, SESSION, strtoull(consumed, NULL, 10), &s_message)) {
     case PN_CHANNEL_EMPTY: (void)printf("empty"); return true;
     case PN_CHANNEL_MESSAGE:
@@ -112,7 +123,8 @@ static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, 
             (void)printf("message -");
         }
         for (uint32_t i = 0U; i < s_message.count; i++) {
-            print_scalar_value(&channel->scalar[i], &s_message.value[i]);
+            print_scalar_value(pn_scalar_next(&walk), &s_message.value[i]);
+            pn_scalar_is(&walk, &s_message.value[i]);
         }
         return true;
     case PN_CHANNEL_REFUSED: (void)printf("refused %s", why[s_message.refusal]); return true;

@@ -79,6 +79,7 @@ static void scalar_entry(pn_text_t *text, const void *table, uint32_t i)
     real_member(text, "real_low", own->real_low);
     real_member(text, "real_high", own->real_high);
     array_member(text, "names", own->name_count, name_entry, own->name);
+    int_member(text, "elements", (int64_t)own->element_count);
     pn_text_char(text, '}');
 }
 

@@ -467,12 +467,12 @@ uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, u
                          capacity);
 }
 
-/* Whether a token made of these scalars refers to the arena: only its strings do. */
-static bool has_strings(const pn_scalar_value_t *scalar_value, uint32_t scalars)
+/* Whether a token made of these scalars refers to the arena: only its strings and lists do. */
+static bool refers(const pn_scalar_value_t *scalar_value, uint32_t scalars)
 {
     bool has = false;
     for (uint32_t i = 0U; (i < scalars) && !has; i++) {
-        has = (scalar_value[i].kind == PN_VALUE_STRING);
+        has = (scalar_value[i].kind == PN_VALUE_STRING) || (scalar_value[i].kind == PN_VALUE_LIST);
     }
     return has;
 }
@@ -492,7 +492,7 @@ bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking,
         }
     }
     const bool is_put = pn_ok(cx) && (value != NULL) && pn_multiset_add(cx, multiset, marking, value, 1U, cx->now);
-    if (!is_put || !has_strings(scalar_value, scalars)) {
+    if (!is_put || !refers(scalar_value, scalars)) {
         pn_arena_release(cx->arena, mark); /* a refused message may come again and again */
     }
     cx->origin = origin;

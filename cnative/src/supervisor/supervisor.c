@@ -257,7 +257,7 @@ static bool check_generated(sup_t *sup)
         if ((channel->place >= pn_net.place_count) || (channel->peer >= pn_cell.peer_count)
             || (channel->scalar_count > PN_CHANNEL_SCALARS)
             || (strcmp(pn_net.place[channel->place].name, channel->place_name) != 0)
-            || (pn_scalar_count(pn_net.place[channel->place].multiset->type) != channel->scalar_count)) {
+            || (pn_message_scalars(pn_net.place[channel->place].multiset->type) != channel->scalar_count)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "channel `%s` does not fit net.c: generate again", channel->name);
         }
     }

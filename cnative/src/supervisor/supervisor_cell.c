@@ -183,12 +183,11 @@ static bool publish_token(sup_t *sup, uint32_t index)
                         "channel-overrun: %" PRIu64 " messages for %s in one cycle; it can hold one", tokens,
                         channel->file);
     }
-    if (pn_multiset_token(place->multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS)
-        != channel->scalar_count) {
+    if (pn_multiset_token(place->multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS) == 0U) {
         return sup_stop(sup, SUP_EXIT_CHANNEL,
                         "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
-                        "bits",
-                        place->name, channel->file);
+                        "bits, or it has more than %u values",
+                        place->name, channel->file, PN_CHANNEL_SCALARS);
     }
     if (!s_cell.transport.write(s_cell.transport.self, index, scalar_value)) {
         return stop_for_transport(sup);

@@ -31,6 +31,32 @@ uint32_t pn_scalar_count(const pn_type_t *type)
     return count;
 }
 
+uint32_t pn_message_scalars(const pn_type_t *type)
+{
+#ifdef PN_FLAT_TYPES
+    return pn_scalar_count(type);
+#else
+    uint32_t count = 0U;
+    for (uint32_t i = 0U; i < parts_of(type); i++) {
+        const pn_type_t *const one = part_at(type, i).type;
+        if (one->kind == PN_KIND_LIST) {
+            const uint32_t own = pn_scalar_count(one->element);
+            if (own == 0U) {
+                return 0U;
+            }
+            count += 1U + own;
+        } else if (is_scalar(one)) {
+            count++;
+        } else if (one->kind != PN_KIND_RECORD) {
+            return 0U;
+        } else {
+            /* a record that is a subset: its parts have been counted */
+        }
+    }
+    return count;
+#endif
+}
+
 uint32_t pn_line_count(const pn_type_t *type)
 {
     const uint32_t scalars = pn_scalar_count(type);
@@ -97,17 +123,52 @@ static bool scalar_of(const pn_type_t *type, const void *value, pn_scalar_value_
     }
 }
 
+/* A value without lists. */
+static bool scalars_of(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity,
+                       uint32_t *used)
+{
+    bool is_good = true;
+    for (uint32_t i = 0U; is_good && (i < parts_of(type)); i++) {
+        const pn_part_t one = part_at(type, i);
+        is_good = scalar_of(one.type, part(value, one.offset), scalar_value, capacity, used);
+    }
+    return is_good;
+}
+
+#ifdef PN_FLAT_TYPES
 uint32_t pn_to_scalars(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity)
 {
     uint32_t used = 0U;
-    for (uint32_t i = 0U; i < parts_of(type); i++) {
-        const pn_part_t one = part_at(type, i);
-        if (!scalar_of(one.type, part(value, one.offset), scalar_value, capacity, &used)) {
-            return 0U;
-        }
-    }
-    return used;
+    return scalars_of(type, value, scalar_value, capacity, &used) ? used : 0U;
 }
+#else
+/* A list: how long it is, and its elements. */
+static bool list_scalars_of(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value,
+                            uint32_t capacity, uint32_t *used)
+{
+    const uint32_t at = *used;
+    const pn_scalar_value_t length = { PN_VALUE_LIST, 0, 0.0, NULL, 0U };
+    bool is_good = push_scalar(scalar_value, capacity, used, length);
+    for (const void *rest = load_pointer(value); is_good && (rest != NULL); rest = pn_list_tail(rest)) {
+        is_good = scalars_of(type->element, pn_list_head(type, rest), scalar_value, capacity, used);
+        scalar_value[at].integer++;
+    }
+    return is_good;
+}
+
+uint32_t pn_to_scalars(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity)
+{
+    uint32_t used = 0U;
+    bool is_good = true;
+    for (uint32_t i = 0U; is_good && (i < parts_of(type)); i++) {
+        const pn_part_t one = part_at(type, i);
+        const void *const at = part(value, one.offset);
+        is_good = (one.type->kind == PN_KIND_LIST) ? list_scalars_of(one.type, at, scalar_value, capacity, &used)
+                                                   : scalars_of(one.type, at, scalar_value, capacity, &used);
+    }
+    return is_good ? used : 0U;
+}
+#endif
 
 static bool enum_from_scalar(const pn_type_t *type, const pn_scalar_value_t *scalar_value, void *value)
 {
@@ -173,6 +234,35 @@ static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn
     }
 }
 
+#ifndef PN_FLAT_TYPES
+static bool list_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,
+                      uint32_t scalars, uint32_t *used)
+{
+    if ((*used >= scalars) || (scalar_value[*used].kind != PN_VALUE_LIST)) {
+        return false;
+    }
+    const int64_t length = scalar_value[*used].integer;
+    bool is_good = true;
+    unsigned char *last = NULL; /* the cell before */
+    (*used)++;
+    for (int64_t i = 0; is_good && (i < length); i++) {
+        unsigned char *const cell = pn_list_new(cx, type, NULL);
+        if (cell == NULL) {
+            return false;
+        }
+        store_pointer((last == NULL) ? value : last, cell); /* the tail is the first member of a cell */
+        void *const slot = pn_list_slot(type, cell);
+        (void)memset(slot, 0, type->element->size);
+        for (uint32_t k = 0U; is_good && (k < parts_of(type->element)); k++) {
+            const pn_part_t one = part_at(type->element, k);
+            is_good = part_from(cx, one.type, part_of(slot, one.offset), scalar_value, scalars, used);
+        }
+        last = cell;
+    }
+    return is_good;
+}
+#endif
+
 bool pn_from_scalars(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,
                      uint32_t scalars)
 {
@@ -181,6 +271,12 @@ bool pn_from_scalars(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_
     (void)memset(value, 0, type->size);
     for (uint32_t i = 0U; is_good && (i < parts_of(type)); i++) {
         const pn_part_t one = part_at(type, i);
+#ifndef PN_FLAT_TYPES
+        if (one.type->kind == PN_KIND_LIST) {
+            is_good = list_from(cx, one.type, part_of(value, one.offset), scalar_value, scalars, &used);
+            continue;
+        }
+#endif
         is_good = part_from(cx, one.type, part_of(value, one.offset), scalar_value, scalars, &used);
     }
     if (!is_good || (used != scalars)) {

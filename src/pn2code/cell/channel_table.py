@@ -12,7 +12,7 @@ from dataclasses import astuple, fields
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import scalars_of
+from pn2code.cell.scalars import ScalarKind, message_scalars
 
 
 @frozen
@@ -43,8 +43,9 @@ def rows(partition: Partition, config: CellConfig) -> tuple[ChannelRow, ...]:
     out = []
     for channel in partition.channels:
         place = partition.net.places[channel.place]
-        count = len(scalars_of(place.colset) or ())
-        default = "one value" if count == 1 else f"{count} values"
+        scalars = message_scalars(place.colset) or ()
+        default = "one value" if len(scalars) == 1 else f"{len(scalars)} values"
+        default = "a list" if any(s.kind is ScalarKind.LIST for s in scalars) else default
         out.append(
             ChannelRow(
                 place.name,

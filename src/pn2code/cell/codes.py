@@ -111,7 +111,8 @@ CHANNEL_DIRECTION = register(
     "a channel needs exactly one writer and one reader",
     "A place that two owners share becomes a file: one owner puts tokens (output arcs only), the other takes them "
     "(input arcs only). Test arcs (both directions), inhibitor and reset arcs, or a third owner would need a lock that "
-    "shared files do not have.",
+    "shared files do not have. For a value that several owners read, give each reader a channel of its own, into which "
+    "the writer puts it, and a place of its own that keeps it (docs/cookbook.md).",
 )
 CHANNEL_UNDECLARED = register(
     "channel-undeclared",
@@ -142,9 +143,10 @@ CHANNEL_LIMIT = register(
 )
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",
-    "the colour set of a channel or input has no fixed number of scalars",
-    "Messages are lines of scalars: unit, bool, int, time, real, string, enumerations, indexes, and products and "
-    "records of these. Lists and unions have no fixed length.",
+    "the colour set of a channel or input cannot be written as one line of scalars",
+    "Messages are lines of scalars: unit, bool, int, time, real, string, enumerations, indexes, products and records "
+    "of these, lists of all that, and products and records with such lists. Unions, lists of lists, and lists in the "
+    "elements of lists are no messages, and input files have no lists.",
 )
 
 CELL_MISSING = register(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, Input
-from pn2code.cell.scalars import scalars_of
+from pn2code.cell.scalars import least_values, message_scalars
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 
@@ -44,7 +44,7 @@ def report_limits(
         *((i.name, i.place) for i in inputs),
     ):
         flat = net.places[place]
-        count = len(scalars_of(flat.colset) or ())
+        count = least_values(message_scalars(flat.colset) or ())
         if count > MOST_SCALARS:
             d.error(
                 codes.CHANNEL_LIMIT,

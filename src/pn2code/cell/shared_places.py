@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from difflib import SequenceMatcher
 from pathlib import PurePath
 
-from pn2code.cell import codes
+from pn2code.cell import codes, looked_at
 from pn2code.cell.config import CellConfig, ChannelConfig
-from pn2code.cell.fixed_size import has_fixed_size
 from pn2code.cell.owners import overlap
 from pn2code.cell.partition import Channel, ChannelKind, Owner
 from pn2code.cell.place_finder import PlaceFinder
-from pn2code.cell.scalars import scalars_of
+from pn2code.cell.scalars import is_one_value, message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 
@@ -35,7 +34,7 @@ def channels_of(
         writers, readers: per place the indices of the owners that put tokens, and of those that look or take.
         find: gives the place of a name, or reports that there is none.
         d: gets an error for each entry that cannot be a channel: not shared, several writers or readers, an initial
-            marking, time stamps, tokens without a fixed size. Those are not given, but for the last three.
+            marking, time stamps, tokens that no message can hold. Those are not given, but for the last three.
     """
     found = [(c, find(c.place, c.origin, "channel")) for c in config.channels]
     known = [(c, place, _kind(c, place)) for c, place in found if place is not None]
@@ -73,13 +72,14 @@ def channels_of(
                 notes=[Note("it is a channel here", entry.origin)],
                 hint="declare the channel's colour set without `timed`; let the writer delay on a place of its own",
             )
-        elif not has_fixed_size(place.colset):
+        elif message_scalars(place.colset) is None:
             d.error(
                 codes.UNSUPPORTED_CHANNEL_COLSET,
-                f"channel `{place.name}` has colour set `{place.colset.name}`, which has no fixed number of scalars",
+                f"channel `{place.name}` has colour set `{place.colset.name}`, which no message can hold",
                 place.origins[0],
                 notes=[Note("it is a channel here", entry.origin)],
-                hint="send products and records of scalars; for a list, send its elements one by one",
+                hint="send scalars, lists of scalars or of products and records of scalars, and products and records "
+                "of all these; the elements of a list of lists one by one",
             )
         yield Channel(
             PurePath(entry.file).stem,
@@ -154,10 +154,10 @@ def _not_shared(
 
 
 def _kind(entry: ChannelConfig, place: FlatPlace) -> ChannelKind:
-    """As written; where it is not, several scalars are data, and one is a flag."""
+    """As written; where it is not, several scalars or a list are data, and one scalar is a flag."""
     if entry.is_kind_given:
         return entry.kind
-    return ChannelKind.FLAG if len(scalars_of(place.colset) or ()) == 1 else ChannelKind.DATA
+    return ChannelKind.FLAG if is_one_value(place.colset) else ChannelKind.DATA
 
 
 def _directed(
@@ -189,12 +189,16 @@ def _directed(
                 notes=[f"transition `{t.name}`", Note("it is a channel here", at)],
             )
         return not odd
+    says, hint = looked_at.told(net, place.index, owners, writers, readers) or (
+        f"is written by {names(writers)} and read by {names(readers)}",
+        "exactly one owner must have output arcs to it, exactly one other owner input arcs from it",
+    )
     d.error(
         codes.CHANNEL_DIRECTION,
-        f"channel `{place.name}` is written by {names(writers)} and read by {names(readers)}",
+        f"channel `{place.name}` {says}",
         place.origins[0],
         notes=[Note("it is a channel here", at)],
-        hint="exactly one owner must have output arcs to it, exactly one other owner input arcs from it",
+        hint=hint,
     )
     return False
 
@@ -232,7 +236,7 @@ def report_undeclared(
         who = ", ".join(
             f"`{owners[i].name}`" for i in sorted(writers[place.index] | readers[place.index])
         )
-        kind = "flag" if len(scalars_of(place.colset) or ()) == 1 else "data"
+        kind = "flag" if is_one_value(place.colset) else "data"
         d.error(
             codes.CHANNEL_UNDECLARED,
             f"place `{place.name}` is shared by {who}, but is not a channel",

@@ -103,8 +103,8 @@ CHANNEL = Section(
         Key(
             "place",
             "text",
-            "A place that two programs share: each token in it is a message. Its colour set is not timed, and has a "
-            "fixed number of scalars: no list, no union.",
+            "A place that two programs share: each token in it is a message. Its colour set is not timed, and made of "
+            "scalars and of lists of these or of records of these: no union, no list of lists.",
             "a place",
             required=True,
         ),
@@ -120,7 +120,8 @@ CHANNEL = Section(
             "text",
             '`"data"` is written before `"flag"`. A program that receives a flag of the supervisor owes it an '
             "answer (I8), so a message that is never answered should be data. Without the key a token of one scalar "
-            "is a flag, of several data. `check` prints a table of all channels, with what decided their kind.",
+            "is a flag, of several, or of a list, data. `check` prints a table of all channels, with what decided "
+            "their kind.",
             words=("data", "flag"),
         ),
     )

@@ -13,7 +13,7 @@ from enum import Enum
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind, Partition
-from pn2code.cell.scalars import Scalar, scalars_of
+from pn2code.cell.scalars import Scalar, message_scalars
 from pn2code.channels.scalars import (
     Malformed,
     ScalarValue,
@@ -89,12 +89,12 @@ class Refused:
 
 
 def specs_of(partition: Partition) -> tuple[ChannelSpec, ...]:
-    """The channels of a cell. A channel without a fixed number of scalars is a bug of an earlier stage."""
+    """The channels of a cell. A channel whose tokens are no messages is a bug of an earlier stage."""
     specs = []
     for channel in partition.channels:
-        scalars = scalars_of(partition.net.places[channel.place].colset)
+        scalars = message_scalars(partition.net.places[channel.place].colset)
         if scalars is None:
-            raise ValueError(f"channel {channel.name} has no fixed number of scalars")
+            raise ValueError(f"channel {channel.name} holds no messages")
         specs.append(
             ChannelSpec(
                 name=channel.name,

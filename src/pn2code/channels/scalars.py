@@ -19,7 +19,12 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.scalars import Scalar, ScalarKind
 
 ScalarValue = bool | int | float | str
-"""BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1."""
+"""BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1. LIST: its length, and
+then the values of its elements.
+"""
+
+MOST_VALUES = 64
+"""Of a message: `PN_CHANNEL_SCALARS` of pn_channel.h."""
 
 
 @frozen
@@ -44,6 +49,60 @@ def scalars_of_json(data: Any) -> Iterator[ScalarValue]:
             yield 1  # unit
         case _:
             yield data
+
+
+class Walk:
+    """Goes along the scalars of a message: those of a list's elements come as often as the list is long.
+
+    walk = Walk(scalars)
+    while (scalar := walk.next()) is not None:
+        ...                         # its value
+        walk.enter(scalar, 3)       # it is a LIST of this length
+    """
+
+    def __init__(self, scalars: Sequence[Scalar]) -> None:
+        self._scalars = scalars
+        self._next = 0
+        self._elements: tuple[Scalar, ...] = ()
+        self._left = 0
+        """values of the list that are still to come"""
+
+    def next(self) -> Scalar | None:
+        """The scalar of the next value; None at the end."""
+        if self._left:
+            self._left -= 1
+            return self._elements[-1 - self._left % len(self._elements)]
+        if self._next == len(self._scalars):
+            return None
+        self._next += 1
+        return self._scalars[self._next - 1]
+
+    def enter(self, scalar: Scalar, length: int) -> None:
+        """What `next` gave last is a list of this length."""
+        self._elements, self._left = scalar.elements, length * len(scalar.elements)
+
+    @property
+    def rest(self) -> int:
+        """How many values are still to come at least."""
+        return self._left + len(self._scalars) - self._next
+
+
+def scalars_of_values(
+    scalars: Sequence[Scalar], values: Sequence[ScalarValue]
+) -> list[Scalar] | None:
+    """The scalar of each value; None where the values are too many or too few, or a list has an impossible length."""
+    walk = Walk(scalars)
+    out: list[Scalar] = []
+    for value in values:
+        scalar = walk.next()
+        if scalar is None:
+            return None
+        out.append(scalar)
+        if scalar.kind is ScalarKind.LIST:
+            if type(value) is not int or not 0 <= value <= len(values):
+                return None
+            walk.enter(scalar, value)
+    return None if walk.rest else out
 
 
 def format_real(value: float) -> str:
@@ -92,6 +151,11 @@ def _in_range(scalar: Scalar, value: float) -> bool:
     return fits and (low is None or value >= low) and (high is None or value <= high)
 
 
+def _is_length(scalar: Scalar, length: int) -> bool:
+    low, high = scalar.low or 0, scalar.high
+    return low <= length and (high is None or length <= high)
+
+
 def _is_constructor(scalar: Scalar, word: str) -> bool:
     """Of those that are known; else anything that CPN ML takes for a name."""
     return word in scalar.names if scalar.names else _NAME.fullmatch(word) is not None
@@ -106,6 +170,8 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
         case ScalarKind.INT | ScalarKind.INDEX:
             fits = not isinstance(value, (str, float)) and _in_range(scalar, int(value))
             return str(int(value)) if fits else None
+        case ScalarKind.LIST:
+            return str(value) if _is_length(scalar, int(value)) else None
         case ScalarKind.REAL:
             if isinstance(value, str) or not math.isfinite(value) or not _in_range(scalar, value):
                 return None
@@ -118,14 +184,17 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
 
 def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str | None:
     """One line without its end; None when the values do not fit (their number, their kinds, not finite)."""
-    if len(scalars) != len(values):
+    of_each = scalars_of_values(scalars, values)
+    if of_each is None or len(values) > MOST_VALUES:
         return None
-    words = [_format_scalar(s, v) for s, v in zip(scalars, values, strict=True)]
+    words = [_format_scalar(s, v) for s, v in zip(of_each, values, strict=True)]
     return None if any(w is None for w in words) else " ".join(w for w in words if w is not None)
 
 
 _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
+_LENGTH = re.compile(r"0|[1-9][0-9]?")
+"""Of a list: no message has as many values as to need three digits."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _MOST_NAMES = 8
@@ -180,6 +249,8 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
             if _STRING.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")
             return _ESCAPE.sub(lambda m: m[1] or chr(int(m[2], 16)), word[1:-1])
+        case ScalarKind.LIST:
+            return _parse_length(scalar, word)
         case ScalarKind.INT | ScalarKind.INDEX:
             if _INTEGER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not an integer ({where})")
@@ -202,6 +273,14 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
     return value
 
 
+def _parse_length(scalar: Scalar, word: str) -> int | _Wrong:
+    """How many elements follow: decimal digits, as few as there can be."""
+    is_number = _LENGTH.fullmatch(word) is not None
+    if not is_number or not _is_length(scalar, int(word)):
+        return _Wrong(f"{quote(word)} is no length of a list of {_where(scalar)}")
+    return int(word)
+
+
 class _Wrong(str):
     """What is wrong with a word: not the value of one, which may be a text, too."""
 
@@ -211,20 +290,29 @@ class _Wrong(str):
 def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ...] | Malformed:
     """Reads one line strictly: exactly these scalars, separated by blanks."""
     values: list[ScalarValue] = []
-    for i, match in enumerate(_WORD.finditer(line)):
-        if i == len(scalars):
+    walk = Walk(scalars)
+    for match in _WORD.finditer(line):
+        scalar = walk.next()
+        if scalar is None:
             found = quote(match[0])
             return Malformed(
-                f"found {found} after the {len(scalars)} values", match.start() + 1, True
+                f"found {found} after the {len(values)} values", match.start() + 1, True
             )
-        value = _parse_scalar(scalars[i], match[0])
+        value = _parse_scalar(scalar, match[0])
         if isinstance(value, _Wrong):
             return Malformed(str(value), match.start() + 1)
         values.append(value)
-    if len(values) < len(scalars):
-        missing = scalars[len(values)]
+        if scalar.kind is ScalarKind.LIST:
+            walk.enter(scalar, int(value))
+        if len(values) + walk.rest > MOST_VALUES:
+            text = f"{quote(match[0])} makes more than the {MOST_VALUES} values that are possible"
+            return Malformed(text, match.start() + 1, True)
+    if walk.rest:
+        expected = len(values) + walk.rest
+        missing = walk.next()
+        assert missing is not None
         text = (
-            f"found {len(values)} values where {len(scalars)} are expected; "
+            f"found {len(values)} values where {expected} are expected; "
             f"the next would be {_where(missing)}"
         )
         return Malformed(text, len(line) + 1, True)

@@ -17,7 +17,7 @@ from typing import Any
 from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.place_finder import PlaceFinder
-from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars, scalars_of
 from pn2code.channels.scalars import format_scalars, scalars_of_json
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind, FlatPlace
@@ -33,6 +33,7 @@ _KINDS = (
     ScalarKind.STRING,
     ScalarKind.ENUM,
     ScalarKind.INDEX,
+    ScalarKind.LIST,
 )
 """In the order of `pn_scalar_kind_t`."""
 _INTEGERS = (-(2**63), 2**63 - 1)
@@ -102,7 +103,7 @@ def _cell(made: Generated, config: CellConfig, game: Game) -> dict[str, Any]:
                     "direction": "out" if writer == 0 else "in",
                     "kind": kind,
                     "peer": config.programs[max(writer, reader) - 1].name,
-                    "scalars": _scalars(scalars_of(place.colset) or ()),
+                    "scalars": _scalars(message_scalars(place.colset) or ()),
                 }
             )
         else:
@@ -173,8 +174,9 @@ def _scalars(scalars: Sequence[Scalar]) -> list[dict[str, Any]]:
             "colset": s.colset,
             **_range(s),
             "names": list(s.names),
+            "elements": len(s.elements),
         }
-        for s in scalars
+        for s in (x for scalar in scalars for x in (scalar, *scalar.elements))
     ]
 
 

@@ -18,7 +18,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.semantics.game.token_game import Game
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
-from pn2code.tdl.types import POSE_FIELDS, Type
+from pn2code.tdl.types import ELEMENT, POSE_FIELDS, Type
 
 _KINDS = {
     Type.INT: ScalarKind.INT,
@@ -83,10 +83,13 @@ def _differences(
 def _of_file(file: t.File) -> _Held:
     held: list[tuple[ScalarKind, bool]] = []
     for kind in file.types:
-        if kind.type is Type.POSE:
+        one = ELEMENT.get(kind.type, kind.type)
+        if kind.type in ELEMENT:
+            held.append((ScalarKind.LIST, False))
+        if one is Type.POSE:
             held += [(ScalarKind.REAL, kind.single)] * len(POSE_FIELDS)
-        elif kind.type in _KINDS:
-            held.append((_KINDS[kind.type], kind.single))
+        elif one in _KINDS:
+            held.append((_KINDS[one], kind.single))
     return tuple(held)
 
 
@@ -99,6 +102,11 @@ def _of_colset(
         for part in c.components:
             assert part is not None
             yield from _of_colset(part, storage, single and is_same)
+        return
+    if c.kind is Kind.LIST:
+        yield ScalarKind.LIST, False
+        assert c.components[0] is not None
+        yield from _of_colset(c.components[0], storage)
         return
     (scalar,) = scalars_of(c) or ()
     yield scalar.kind, single and scalar.kind is ScalarKind.REAL

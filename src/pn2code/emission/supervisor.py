@@ -14,7 +14,7 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
-from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars
 from pn2code.diagnostics import Origin
 from pn2code.emission import arena_size, c_flags, needs
 from pn2code.emission.arena_size import ArenaSize
@@ -49,6 +49,7 @@ class _Scalar:
     range: str
     names: str
     name_count: int
+    element_count: int
 
 
 @frozen
@@ -77,7 +78,8 @@ def _range(scalar: Scalar) -> str:
 def _table(ident: str, comment: str, scalars: Sequence[Scalar]) -> _Table:
     names: dict[tuple[str, ...], _Names] = {}
     rows = []
-    for scalar in scalars:
+    # What the elements of a list are made of comes behind it.
+    for scalar in (x for s in scalars for x in (s, *s.elements)):
         table = None
         if scalar.names:
             table = names.setdefault(
@@ -91,16 +93,17 @@ def _table(ident: str, comment: str, scalars: Sequence[Scalar]) -> _Table:
                 range=_range(scalar),
                 names=table.ident if table else "",
                 name_count=len(scalar.names),
+                element_count=len(scalar.elements),
             )
         )
     return _Table(ident, comment, tuple(names.values()), tuple(rows))
 
 
 def _scalars(place: FlatPlace) -> tuple[Scalar, ...]:
-    """Of a channel or input; that they have a fixed number was checked when the net was divided."""
-    found = scalars_of(place.colset)
+    """Of a channel or input; that there are any was checked when the net was divided."""
+    found = message_scalars(place.colset)
     if found is None:
-        raise ValueError(f"place {place.name} ({place.colset.name}) has no fixed number of scalars")
+        raise ValueError(f"place {place.name} ({place.colset.name}) holds no messages")
     return found
 
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pn2code.cell.partition import Channel, OwnerKind, Partition
-from pn2code.cell.scalars import scalars_of
-from pn2code.channels.scalars import format_scalars, scalars_of_json
+from pn2code.cell.scalars import message_scalars
+from pn2code.cell.token_values import message_values
+from pn2code.channels.scalars import format_scalars
 from pn2code.net.flat import FlatPlace
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.values.colour_json import to_json
@@ -60,8 +61,8 @@ class StepMessages:
 def value_text(place: FlatPlace, value: Any) -> str:
     """A token as it stands in a file."""
     data = to_json(place.colset, value)
-    scalars = scalars_of(place.colset) or ()
-    return format_scalars(scalars, tuple(scalars_of_json(data))) or str(data)
+    scalars = message_scalars(place.colset) or ()
+    return format_scalars(scalars, tuple(message_values(place.colset, data))) or str(data)
 
 
 def _values(marking: PlaceMarking) -> list[Any]:

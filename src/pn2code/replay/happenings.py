@@ -13,7 +13,7 @@ import numpy as np
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import scalars_of
+from pn2code.cell.scalars import message_scalars
 from pn2code.channels.scalars import format_scalars
 from pn2code.replay.arrays import packed_reals
 from pn2code.run.record import ActionRecord, MessageRecord, RunRecord
@@ -68,7 +68,7 @@ def messages(traffic: Iterable[tuple[str, MessageRecord]], partition: Partition)
     rows = []
     for what, m in traffic:
         channel = channels[m.channel]
-        scalars = scalars_of(partition.net.places[channel.place].colset) or ()
+        scalars = message_scalars(partition.net.places[channel.place].colset) or ()
         text = format_scalars(scalars, m.values) or " ".join(map(str, m.values))
         rows.append(
             {

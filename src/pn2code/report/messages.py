@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePath
 
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import scalars_of
+from pn2code.cell.scalars import message_scalars
 from pn2code.channels.scalars import format_scalars
 from pn2code.run.record import MessageRecord
 
@@ -26,7 +26,7 @@ def messages_tsv(partition: Partition, traffic: list[tuple[str, MessageRecord]])
     for what, m in traffic:
         channel = channels[m.channel]
         names = [partition.owners[i].name for i in (channel.writer, channel.reader)]
-        scalars = scalars_of(partition.net.places[channel.place].colset) or ()
+        scalars = message_scalars(partition.net.places[channel.place].colset) or ()
         text = format_scalars(scalars, m.values) or " ".join(map(str, m.values))
         rows.append("\t".join([f"{m.t:.6f}", m.channel, *names, what, text]))
     return "".join(f"{row}\n" for row in rows)

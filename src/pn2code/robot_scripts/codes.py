@@ -29,15 +29,18 @@ UNSUPPORTED_TIME = register(
 UNSUPPORTED_EXPRESSION = register(
     "unsupported-robot-expression",
     "an expression cannot be translated to the script language",
-    "Scripts have integers, reals, Booleans, strings, poses, arithmetic, comparisons, conditionals and field "
-    "selection. Functions of the net are inlined. Lists, references, exceptions, recursion, trigonometry and random "
+    "Scripts have integers, reals, Booleans, strings, poses, lists of these, arithmetic, comparisons, conditionals and "
+    "field selection. Functions of the net are inlined. Of lists there are `[a, b]`, `a :: l`, the patterns `[]` and "
+    "`a :: l`, `hd`, `tl`, `length`, `null`, `List.nth`, `rev` and `^^`; one transition for each item goes along a "
+    "list. Functions that take functions (`map`, `sort`), references, exceptions, recursion, trigonometry and random "
     "numbers belong on the supervisor's pages.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-robot-colset",
     "a robot page uses a colour set that scripts do not have",
     "Places of a robot may hold units, booleans, integers, times, reals, strings, enumerations, and "
-    "records and products of these. A record of six reals named x y z rx ry rz is a pose.",
+    "records and products of these. A record of six reals named x y z rx ry rz is a pose. There may be lists of "
+    "anything of these but units and records other than poses.",
 )
 CHOICE = register(
     "robot-choice",

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import ScalarKind, scalars_of
+from pn2code.cell.scalars import ScalarKind, message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
@@ -88,7 +88,8 @@ class Data:
                     places[p].origins[0],
                     notes=[f"{self.machine.owner.phrase} uses the place"],
                     hint="use units, booleans, integers, times, reals, strings, enumerations, "
-                    "and records and products of these",
+                    "records and products of these, and lists of anything of these but units and records other than "
+                    "poses (`x`, `y`, `z`, `rx`, `ry`, `rz`)",
                 )
                 return False
             if is_file and _has_unit(places[p].colset):
@@ -111,7 +112,7 @@ class Data:
                     channel.file,
                     direction,
                     self.shapes[p],
-                    scalars_of(places[p].colset) or (),
+                    message_scalars(places[p].colset) or (),
                     place_element(places[p], "channel"),
                 )
         # Variables first: their names are theirs alone.
@@ -227,7 +228,7 @@ class Data:
 
 
 def _has_unit(colset: Colset) -> bool:
-    kinds = [s.kind for s in scalars_of(colset) or ()]
+    kinds = [s.kind for s in message_scalars(colset) or ()]
     return len(kinds) > 1 and ScalarKind.UNIT in kinds
 
 

@@ -13,6 +13,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, TRecord, Type
 from pn2code.ml.typing.matches import Coverage, coverage
+from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import PARTIAL
 from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.values import (
@@ -29,6 +30,8 @@ from pn2code.robot_scripts.values import (
     builtin,
     choose,
     conjunction,
+    cons,
+    empty_list,
     equal,
     is_enumeration,
     pose,
@@ -119,6 +122,18 @@ class Evaluator:
                     return Scalar(t.Value(constructor.name == "true"), _BOOL)
                 if is_enumeration(type_, self.program):
                     return Scalar(t.Value(constructor.name), tdl.Type.STRING)
+                if constructor.name == "nil" and lists.element_of(type_) is not None:
+                    return empty_list(type_, self.program, e.span)
+            case core.ListExp(items, type_):
+                made = empty_list(type_, self.program, e.span)
+                for item in reversed([self.evaluate(x, env) for x in items]):
+                    made = cons(item, made, e.span)
+                return made
+            case core.Apply(core.Con(constructor), core.RecordExp(((_, first), (_, others)))) if (
+                constructor.name == "::"
+            ):
+                head = self.evaluate(first, env)
+                return cons(head, self.evaluate(others, env), e.span)
             case core.RecordExp(fields, type_):
                 values = {label: self.evaluate(x, env) for label, x in fields}
                 return self._record(values, type_, e.span)
@@ -140,10 +155,10 @@ class Evaluator:
             case core.Case(scrutinee, rules):
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
             case core.Apply(core.Builtin(name), argument):
-                found = builtin(name, self.evaluate(argument, env), e.span)
-                if self.owe is not None and name in PARTIAL and isinstance(found, Scalar):
-                    self.owe(Owed(self._path, found.exp))
-                return found
+                result = builtin(name, self.evaluate(argument, env), e.span)
+                if self.owe is not None and name in PARTIAL and isinstance(result, Scalar):
+                    self.owe(Owed(self._path, result.exp))
+                return result
             case core.Apply(function, argument):
                 return self._apply(
                     self.evaluate(function, env), self.evaluate(argument, env), e.span
@@ -151,9 +166,11 @@ class Evaluator:
             case _:
                 pass
         what = {
-            "ListExp": "a list", "Raise": "an exception", "Handle": "an exception handler",
-            "While": "a `while` loop", "Con": "a value with a constructor", "Builtin": "this function",
+            "Raise": "an exception", "Handle": "an exception handler",
+            "While": "a `while` loop", "Con": "a value with a constructor",
         }.get(type(e).__name__, "this expression")  # fmt: skip
+        if isinstance(e, core.Builtin):
+            what = f"`{e.name}`"
         raise UnsupportedError(f"{what} cannot be used in a robot script", e.span)
 
     def _variable(self, symbol: core.Symbol, env: Env, span: Span) -> Value:
@@ -338,9 +355,20 @@ class Evaluator:
                 if is_enumeration(type_, self.program):
                     name = Scalar(t.Value(constructor.name), tdl.Type.STRING)
                     return [equal(value, name, pattern.span)]
+                if constructor.name == "nil" and isinstance(value, Scalar):
+                    return [lists.is_empty(value.exp)]
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
+            case core.PCon(constructor, core.PRecord(((_, head), (_, tail)))) if (
+                constructor.name == "::" and isinstance(value, Scalar) and value.type in tdl.LISTS
+            ):
+                first = Scalar(lists.first(value.exp), tdl.ELEMENT[value.type])
+                others = Scalar(lists.rest(value.exp), value.type)
+                out = [lists.has_items(value.exp)]
+                if out[0] == FALSE:
+                    return out
+                return [*out, *self.match(head, first, env), *self.match(tail, others, env)]
             case core.PAs(symbol, inner):
                 env[symbol.uid] = value
                 return self.match(inner, value, env)

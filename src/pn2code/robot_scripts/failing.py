@@ -1,5 +1,7 @@
-"""Which computations may fail: whole numbers divided by zero or out of range, reals without a whole part.
+"""Which computations may fail: whole numbers divided by zero or out of range, reals without a whole part, items that a
+list does not have.
 
+hd l            may be of an empty list; not where `l <> []` is known
 n + 1           may be too large; not where `n < 3` is known
 10 div n        may be a division by zero; not where `n <> 0` is known
 w + 1.0         reals do not fail
@@ -12,6 +14,7 @@ from collections.abc import Iterable, Mapping, Set
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import Symbol
+from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.guards import Constant, fact, ways
 from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.robot_scripts.values import Env, Scalar
@@ -22,9 +25,12 @@ from pn2code.tdl.types import MAX_INT, MIN_INT
 
 PARTIAL = frozenset(
     {"Int.+", "Int.-", "Int.*", "Int.div", "Int.mod", "Int.~", "Int.abs",
-     "Real.floor", "Real.ceil", "Real.round", "Real.trunc"}
+     "Real.floor", "Real.ceil", "Real.round", "Real.trunc", "List.hd", "List.tl", "List.nth"}
 )  # fmt: skip
 """Functions of CPN ML that scripts have, and that may raise an exception."""
+
+
+_PARTS = ("first_of", "rest_of", "item_of")
 
 
 @frozen
@@ -84,6 +90,11 @@ class Known:
                 high = c.high if isinstance(c.high, int) else MAX_INT
                 subject = expression(value.exp)
                 ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
+            if v.uid in of and c is not None and c.kind is Kind.LIST and isinstance(value, Scalar):
+                low = c.low if isinstance(c.low, int) else 0
+                high = c.high if isinstance(c.high, int) else MAX_INT
+                subject = expression(lists.count(value.exp))
+                ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
         return Known(self.constants, self.may_be_nan, ranges)
 
     def range_of(self, e: t.Expression) -> Range:
@@ -105,6 +116,8 @@ class Known:
                 return Range(-a.high, -a.low)
             case t.Binary("+" | "-" | "*" | "div" | "mod" as operator, left, right):
                 return _combined(operator, self.range_of(left), self.range_of(right))
+            case t.CallExpression("count_of"):
+                return Range(low=0)
             case t.CallExpression("abs", (operand,)):
                 a = self.range_of(operand)
                 return Range(0 if a.low <= 0 <= a.high else min(abs(a.low), abs(a.high)),
@@ -113,8 +126,13 @@ class Known:
                 return ALL
 
     def fails_itself(self, e: t.Expression) -> bool:
-        """Whether a whole-number expression may have no value although its parts have one."""
+        """Whether a whole-number expression, or a part of a list, may have no value although its parts have one."""
         match e:
+            case t.CallExpression("first_of" | "rest_of", (of,)):
+                return 0 in self.range_of(lists.count(of))
+            case t.CallExpression("item_of", (of, number)):
+                asked, there = self.range_of(number), self.range_of(lists.count(of))
+                return asked.low < 0 or asked.high >= there.low
             case t.Binary("div" | "mod", _, right) if 0 in self.range_of(right):
                 return True
             case t.CallExpression("floor" | "ceil" | "round" | "trunc" | "single"):
@@ -135,8 +153,9 @@ class Known:
                     return True
                 return self.with_condition(condition, False).fails(otherwise)
             case _:
-                # What may be NaN is a real, whose arithmetic does not fail.
-                fails = self.fails_itself(e) and not self.may_be_nan(e)
+                # What may be NaN is a real, whose arithmetic does not fail; but it may not be there.
+                is_part = isinstance(e, t.CallExpression) and e.function in _PARTS
+                fails = self.fails_itself(e) and (is_part or not self.may_be_nan(e))
                 return fails or any(map(self.fails, children(e)))
 
 

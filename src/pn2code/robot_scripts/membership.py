@@ -11,11 +11,13 @@ Where all values that may come are in the colour set, nothing is asked.
 from __future__ import annotations
 
 from collections.abc import Iterator, Set
+from dataclasses import replace
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
+from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, builtin, select
 from pn2code.tdl import tree as t
@@ -34,6 +36,13 @@ def of_pattern(pattern: core.Pat, source: Colset | None) -> Iterator[tuple[Symbo
             parts = parts_of(source)
             for label, part in fields:
                 yield from of_pattern(part, parts.get(label))
+        case core.PCon(constructor, core.PRecord(((_, head), (_, tail)))) if (
+            constructor.name == "::"
+        ):
+            one = None if source is None else source.whole
+            is_list = one is not None and one.kind is Kind.LIST
+            yield from of_pattern(head, one.components[0] if is_list and one else None)
+            yield from of_pattern(tail, _longer(source, -1))
         case core.PCon(argument=argument) if argument is not None:
             yield from of_pattern(argument, None)
         case _:
@@ -115,8 +124,43 @@ def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
             return symbol.colset
         case core.Select(label, record):
             return parts_of(_source(record, taken)).get(label)
+        case core.If(_, then, otherwise):
+            return _either(_source(then, taken), _source(otherwise, taken))
+        case core.Apply(core.Builtin("List.tl"), of):
+            return _longer(_source(of, taken), -1)
+        case core.Apply(core.Builtin("List.rev"), of):
+            return _source(of, taken)
+        case core.Apply(core.Con(constructor), core.RecordExp(((_, item), (_, others)))) if (
+            constructor.name == "::"
+        ):
+            one, rest = _source(item, taken), _source(others, taken)
+            whole = None if rest is None else rest.whole
+            is_same = one is not None and whole is not None and whole.kind is Kind.LIST
+            is_same = is_same and whole is not None and whole.components[0] == one
+            return _longer(rest, 1) if is_same else None
         case _:
             return None
+
+
+def _either(a: Colset | None, b: Colset | None) -> Colset | None:
+    """The colour set of values that are in one of two, where it can be told: the same, or lists of the same items."""
+    if a == b or a is None or b is None:
+        return a if a == b else None
+    one, other = a.whole, b.whole
+    if one.kind is not Kind.LIST or one.components != other.components or one.kind != other.kind:
+        return None
+    low = min(x.low if isinstance(x.low, int) else 0 for x in (one, other))
+    highs = [x.high for x in (one, other) if isinstance(x.high, int)]
+    return replace(one, name="", low=low, high=max(highs) if len(highs) == 2 else None)
+
+
+def _longer(c: Colset | None, by: int) -> Colset | None:
+    """The colour set of lists that are longer by some items than those of another one."""
+    whole = None if c is None else c.whole
+    if whole is None or whole.kind is not Kind.LIST:
+        return None
+    low, high = (x + by if isinstance(x, int) else None for x in (whole.low, whole.high))
+    return replace(whole, name="", low=low if low is None else max(0, low), high=high)
 
 
 def _unless_known(
@@ -162,6 +206,9 @@ def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[
         for label, part in parts_of(c).items():
             yield from _of(part, select(value, label, span), inner.get(label), span)
         return
+    if c.kind is Kind.LIST and isinstance(value, Scalar):
+        yield from _of_length(c, value, source, span)
+        return
     if c.kind not in (Kind.INT, Kind.REAL) or not isinstance(value, Scalar):
         raise _UnaskableError(c)
     own = source if source is not None and source.kind is c.kind else None
@@ -170,6 +217,33 @@ def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[
         yield _compared(f"{name}.>=", value, c.low, span)
     if c.high is not None and not (own and own.high is not None and own.high <= c.high):  # type: ignore[operator]
         yield _compared(f"{name}.<=", value, c.high, span)
+
+
+def _of_length(
+    c: Colset, value: Scalar, source: Colset | None, span: Span
+) -> Iterator[t.Expression]:
+    """What has to be so of a list: how long it is. What its items are has to be known."""
+    element = c.components[0]
+    own = source if source is not None and source.kind is Kind.LIST else None
+    assert element is not None
+    items = lists.items_of(value.exp)
+    if has_bounds(element) and items != ():
+        inner = None if own is None else own.components[0]
+        if inner is None or inner.resolved != element.resolved:
+            raise _UnaskableError(c)
+    count = Scalar(lists.count(value.exp), tdl.Type.INT)
+    if isinstance(c.low, int) and not (own and isinstance(own.low, int) and own.low >= c.low):
+        yield from _if_open("Int.>=", count, c.low, span)
+    if isinstance(c.high, int) and not (own and isinstance(own.high, int) and own.high <= c.high):
+        yield from _if_open("Int.<=", count, c.high, span)
+
+
+def _if_open(name: str, count: Scalar, end: int, span: Span) -> Iterator[t.Expression]:
+    if isinstance(count.exp, t.Value) and type(count.exp.value) is int:
+        is_so = count.exp.value >= end if name == "Int.>=" else count.exp.value <= end
+        yield t.Value(is_so)
+    elif end > 0 or name == "Int.<=":
+        yield _compared(name, count, end, span)
 
 
 def _compared(name: str, value: Scalar, end: int | float | str, span: Span) -> t.Expression:

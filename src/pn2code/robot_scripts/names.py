@@ -60,6 +60,13 @@ def of_stem(stem: str, shape: Shape) -> list[str]:
     return [f"{stem}_{identifier(label)}" if label else stem for label, _ in scalar_shapes(shape)]
 
 
+def _in_file(of: Type, kind: ScalarKind) -> Type:
+    """A type as files have it: the texts of enumerations are words there."""
+    if kind is not ScalarKind.ENUM:
+        return of
+    return Type.WORDS if of is Type.STRINGS else Type.WORD
+
+
 @record
 class _Variable:
     type: t.TypeName
@@ -102,8 +109,8 @@ class Names:
         types: tuple[t.TypeName, ...] = ()
         rest = list(scalars)
         for _, scalar in scalar_shapes(shape):
-            is_word = rest[0].kind is ScalarKind.ENUM
-            types += (t.TypeName(Type.WORD if is_word else scalar.type, scalar.single),)
+            kind = (rest[0].elements or rest)[0].kind
+            types += (t.TypeName(_in_file(scalar.type, kind), scalar.single),)
             del rest[: len(POSE_FIELDS) if scalar.type is Type.POSE else 1]
         if not types:
             types = (t.TypeName(Type.SIGNAL),)

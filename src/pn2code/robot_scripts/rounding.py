@@ -13,6 +13,7 @@ from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.values import Fields, Rec, Scalar, ScalarShape, Shape, Value
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, single
+from pn2code.tdl.expressions import MAKES
 
 
 def rounded(value: Value, shape: Shape, names: Names) -> Iterator[t.Expression]:
@@ -42,7 +43,11 @@ def _is_rounded(e: t.Expression, names: Names) -> bool:
             return _is_rounded(inner, names)
         case t.Unary("-", inner) | t.CallExpression("abs" | "single", (inner,)):
             return _is_rounded(inner, names)
-        case t.CallExpression("pose" | "min" | "max", arguments):
+        case t.CallExpression("first_of" | "rest_of" | "item_of" | "reversed", (of, *_)):
+            return _is_rounded(of, names)
+        case t.CallExpression("pose" | "min" | "max" | "with_first" | "joined", arguments):
+            return all(_is_rounded(a, names) for a in arguments)
+        case t.CallExpression(function, arguments) if function in MAKES:
             return all(_is_rounded(a, names) for a in arguments)
         case t.CallExpression("real"):
             return True

@@ -228,7 +228,7 @@ class StepTranslator:
             )
         assert symbol.colset is not None
         shape = shape_of_colset(symbol.colset, self.pure.program, self.storage)
-        if not isinstance(shape, ScalarShape) or shape.type is tdl.Type.POSE:
+        if not isinstance(shape, ScalarShape) or shape.type in {tdl.Type.POSE, *tdl.LISTS}:
             raise UnsupportedError(
                 f"sensor `{sensor}` decides `{symbol.name}` of colour set `{symbol.colset.name}`, but a "
                 "sensor gives one number, truth value or text",

@@ -17,6 +17,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL, INT, INTINF, REAL, STRING, TCon, TRecord, Type
 from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import lists
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
@@ -76,6 +77,9 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
             }
             if ml in simple:
                 return ScalarShape(simple[ml])
+            element = lists.element_of(ml)
+            if element is not None:
+                return _list_of(shape_of_type(element, program))
             return ScalarShape(tdl.Type.STRING) if is_enumeration(ml, program) else None
         case TRecord(fields):
             labels, types = tuple(x for x, _ in fields), tuple(x for _, x in fields)
@@ -85,6 +89,13 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
             return _fields(inner)
         case _:
             return None
+
+
+def _list_of(element: Shape | None) -> Shape | None:
+    """The shape of a list: of numbers, truth values, texts or poses."""
+    if not isinstance(element, ScalarShape) or element.type not in tdl.LIST_OF:
+        return None
+    return ScalarShape(tdl.LIST_OF[element.type], element.single)
 
 
 def _fields(inner: list[tuple[str, Shape | None]]) -> Fields | None:
@@ -146,6 +157,11 @@ def shape_of_colset(
             assert isinstance(only, ScalarShape)
             return ScalarShape(tdl.Type.POSE, only.single)
         return _fields(inner)
+    if c.kind is Kind.LIST and c.components[0] is not None:
+        one = c.components[0].whole
+        if one.labels and tuple(one.labels) != POSE_LABELS:
+            return None  # traces write the items as the script has them
+        return _list_of(shape_of_colset(c.components[0], program, storage, in_order=True))
     if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.TIME, Kind.STRING, Kind.ENUM):
         return shape_of_type(c.type, program)
     return None
@@ -385,6 +401,10 @@ def equal(a: Value, b: Value, span: Span) -> t.Expression:
             return TRUE
         if isinstance(a.exp, t.Value) and isinstance(b.exp, t.Value):
             return TRUE if a.exp.value == b.exp.value else FALSE
+        if a.type in tdl.LISTS:
+            if () in (lists.items_of(a.exp), lists.items_of(b.exp)):
+                return lists.is_empty(b.exp if lists.items_of(a.exp) == () else a.exp)
+            return t.Binary("=", a.exp, b.exp)
         if isinstance(a.exp, t.Value):
             a, b = b, a  # `k = 1` reads better than `1 = k`
         if a.type is tdl.Type.BOOL and isinstance(b.exp, t.Value):
@@ -435,6 +455,8 @@ def builtin(name: str, argument: Value, span: Span) -> Value:
     scalars = [x for x in operands if isinstance(x, Scalar)]
     if len(scalars) != len(operands):
         raise UnsupportedError(f"`{name}` cannot be used in a robot script", span)
+    if name in lists.FUNCTIONS:
+        return _on_list(name, scalars)
     if name in _SIMPLE:
         operator, result = _SIMPLE[name]
         return Scalar(t.Binary(operator, scalars[0].exp, scalars[1].exp), result)
@@ -449,6 +471,49 @@ def builtin(name: str, argument: Value, span: Span) -> Value:
     if name in ("Int.~", "Real.~"):
         return Scalar(_minus(scalars[0].exp), scalars[0].type)
     return _real(name, scalars, span)
+
+
+def _on_list(name: str, s: list[Scalar]) -> Scalar:
+    of = s[0]
+    match name:
+        case "List.length":
+            return Scalar(lists.count(of.exp), _INT)
+        case "List.null":
+            return Scalar(lists.is_empty(of.exp), _BOOL)
+        case "List.hd":
+            return Scalar(lists.first(of.exp), tdl.ELEMENT[of.type])
+        case "List.tl":
+            return Scalar(lists.rest(of.exp), of.type)
+        case "List.nth":
+            return Scalar(t.CallExpression("item_of", (of.exp, s[1].exp)), tdl.ELEMENT[of.type])
+        case "List.rev":
+            return Scalar(t.CallExpression("reversed", (of.exp,)), of.type)
+        case _:
+            return Scalar(t.CallExpression("joined", (of.exp, s[1].exp)), of.type)
+
+
+def cons(item: Value, of: Value, span: Span) -> Scalar:
+    """`item :: of`.
+
+    Raises:
+        UnsupportedError: scripts have no such list.
+    """
+    if not isinstance(item, Scalar) or not isinstance(of, Scalar) or of.type not in tdl.LISTS:
+        raise UnsupportedError("a list of such values cannot be used in a robot script", span)
+    plain = as_real(item) if of.type is tdl.Type.REALS else item
+    return Scalar(lists.with_first(plain.exp, of.exp), of.type)
+
+
+def empty_list(ml: Type, program: core.Program, span: Span) -> Scalar:
+    """`[]` of a type.
+
+    Raises:
+        UnsupportedError: scripts have no such list.
+    """
+    shape = shape_of_type(ml, program)
+    if not isinstance(shape, ScalarShape) or shape.type not in tdl.LISTS:
+        raise UnsupportedError(f"values of type `{ml}` cannot be used in a robot script", span)
+    return Scalar(lists.made((), shape.type), shape.type)
 
 
 def _real(name: str, s: list[Scalar], span: Span) -> Scalar:

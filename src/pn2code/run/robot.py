@@ -27,7 +27,7 @@ from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.requests import AwaitFile, Event, Execute, Fault, FileError, Finished, Sense
 from pn2code.tdl.requests import Scalar as SensedValue
-from pn2code.tdl.types import POSE_FIELDS, Type
+from pn2code.tdl.types import ELEMENT, POSE_FIELDS, Type
 
 PAUSE_S = 0.001
 """Between two looks at the files: the cycle time of a robot controller's background task."""
@@ -112,6 +112,9 @@ def script_specs(program: CheckedProgram, robot: str) -> tuple[ChannelSpec, ...]
 
 def _scalars(kind: Type) -> tuple[Scalar, ...]:
     match kind:
+        case _ if kind in ELEMENT:
+            elements = _scalars(ELEMENT[kind])
+            return (Scalar(ScalarKind.LIST, str(kind), str(kind), (), 0, None, elements),)
         case Type.POSE:
             return tuple(Scalar(ScalarKind.REAL, name, "pose") for name in POSE_FIELDS)
         case Type.INT:

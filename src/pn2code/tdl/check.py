@@ -18,7 +18,7 @@ from pn2code.tdl import codes, flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.expressions import RESERVED, Scope, type_of
-from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
+from pn2code.tdl.types import IN_SCRIPT, NUMBERS, QUANTITIES, Type, fits
 
 AXES = (4, 6, 7)
 """How many axes an arm may have."""
@@ -181,12 +181,12 @@ class _Checker:
             )
 
     def variable(self, x: t.Variable) -> None:
-        if x.type.type in (Type.SIGNAL, Type.WORD):
+        if x.type.type is Type.SIGNAL or x.type.type in IN_SCRIPT:
             self.d.error(
                 codes.TYPE,
                 f"only files can be of type `{x.type.type}`",
                 x.type.span,
-                hint="use `bool`" if x.type.type is Type.SIGNAL else "use `string`",
+                hint=f"use `{IN_SCRIPT.get(x.type.type, Type.BOOL)}`",
             )
             return
         if x.initial is not None:
@@ -637,7 +637,7 @@ class _Checker:
 
 def _values(file: t.File) -> tuple[t.TypeName, ...]:
     """The types of a message's values inside the script: a word is a string, a signal has none."""
-    inside = (replace(k, type=Type.STRING) if k.type is Type.WORD else k for k in file.types)
+    inside = (replace(k, type=IN_SCRIPT.get(k.type, k.type)) for k in file.types)
     return tuple(k for k in inside if k.type is not Type.SIGNAL)
 
 

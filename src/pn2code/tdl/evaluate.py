@@ -1,9 +1,9 @@
 """Values of scripts and the meaning of expressions.
 
-A value is an `int`, `float`, `bool`, `str` or `ScriptPose`; a quantity is a `float` in the base unit of
-its dimension (mm, deg, s, mm/s). The program has been checked, so types are right; what can still go
-wrong (a whole number divided by zero, or too large) raises `ScriptError`. Reals are those of IEEE 754, as in nets: what
-is no finite number may be computed with, but not said or carried out.
+A value is an `int`, `float`, `bool`, `str` or `ScriptPose`, or a tuple of these (a list); a quantity is a `float` in
+the base unit of its dimension (mm, deg, s, mm/s). The program has been checked, so types are right; what can still go
+wrong (a whole number divided by zero, or too large, the first item of an empty list) raises `ScriptError`. Reals are
+those of IEEE 754, as in nets: what is no finite number may be computed with, but not said or carried out.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Protocol, assert_never, cast
 from pn2code.base.frozen import frozen
 from pn2code.robot.approach import pose_before
 from pn2code.tdl import tree as t
-from pn2code.tdl.types import MAX_INT, MIN_INT, UNITS
+from pn2code.tdl.types import ELEMENT, MAX_INT, MIN_INT, TYPES_BY_NAME, UNITS, Type
 
 
 @frozen
@@ -33,7 +33,8 @@ class ScriptPose:
     rz: float
 
 
-ScriptValue = int | float | bool | str | ScriptPose
+Element = int | float | bool | str | ScriptPose
+ScriptValue = Element | tuple[Element, ...]
 
 
 class ScriptError(Exception):
@@ -82,7 +83,7 @@ def evaluate(e: t.Expression, env: Environment) -> ScriptValue:
 
 
 def _checked(value: ScriptValue) -> ScriptValue:
-    if isinstance(value, bool | str | ScriptPose):
+    if isinstance(value, bool | str | ScriptPose | tuple):
         return value
     if isinstance(value, int) and not MIN_INT <= value <= MAX_INT:
         raise ScriptError(f"the integer {value} is out of range (31 bits)")
@@ -107,11 +108,20 @@ def _greatest(a: float, b: float) -> float:
 
 
 def _is_equal(a: ScriptValue, b: ScriptValue) -> bool:
-    """Reals as IEEE 754 has them; poses as tokens, whose components are equal where both are NaN."""
+    """Reals as IEEE 754 has them; poses and lists as tokens, whose parts are equal where both are NaN."""
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(_is_same, a, b))
     if isinstance(a, ScriptPose) and isinstance(b, ScriptPose):
         pairs = zip(astuple(a), astuple(b), strict=True)
         return all(x == y or (math.isnan(x) and math.isnan(y)) for x, y in pairs)
     return a == b
+
+
+def _is_same(a: ScriptValue, b: ScriptValue) -> bool:
+    """Elements of a list."""
+    if isinstance(a, float) and isinstance(b, float) and math.isnan(a) and math.isnan(b):
+        return True
+    return _is_equal(a, b)
 
 
 def _binary(operator: str, a: ScriptValue, b: ScriptValue) -> ScriptValue:
@@ -155,6 +165,8 @@ def _ordered(operator: str, a: ScriptValue, b: ScriptValue) -> bool:
 
 def single(value: ScriptValue) -> ScriptValue:
     """Rounded to single precision, component by component; ScriptError if it is too large for that."""
+    if isinstance(value, tuple):
+        return tuple(cast(Element, single(v)) for v in value)
     if isinstance(value, ScriptPose):
         return ScriptPose(*(cast(float, single(v)) for v in astuple(value)))
     if isinstance(value, float):
@@ -185,7 +197,13 @@ _TO_INT: dict[str, Callable[[float], int]] = {
 def _call(function: str, arguments: list[ScriptValue]) -> ScriptValue:
     if function == "pose":
         return ScriptPose(*(float(cast(float, a)) for a in arguments))
+    if (of := TYPES_BY_NAME.get(function)) in ELEMENT:
+        items = cast(list[Element], arguments)
+        # An int may stand where a real is expected.
+        return tuple(float(cast(float, x)) if of is Type.REALS else x for x in items)
     first = arguments[0]
+    if isinstance(first, tuple):
+        return _of_list(function, first, arguments[1:])
     if isinstance(first, ScriptPose) and function == "before":
         return ScriptPose(*pose_before(astuple(first), cast(float, arguments[1])))
     if function == "computed":
@@ -219,6 +237,36 @@ def _call(function: str, arguments: list[ScriptValue]) -> ScriptValue:
             return _checked(_TO_INT[function](x))
 
 
+def _of_list(function: str, items: tuple[Element, ...], more: list[ScriptValue]) -> ScriptValue:
+    match function:
+        case "count_of":
+            return _checked(len(items))
+        case "first_of" | "rest_of" if not items:
+            raise ScriptError(f"`{function}` of an empty list")
+        case "first_of":
+            return items[0]
+        case "rest_of":
+            return items[1:]
+        case "item_of":
+            i = cast(int, more[0])
+            if not 0 <= i < len(items):
+                raise ScriptError(f"`item_of` of a list of {len(items)}, which has no item {i}")
+            return items[i]
+        case "with_first":
+            return (cast(Element, more[0]), *items)
+        case "joined":
+            return items + cast(tuple[Element, ...], more[0])
+        case "reversed":
+            return items[::-1]
+        case "single":
+            return single(items)
+        case "computed":
+            return True
+        case "text":
+            return show(items)
+    raise ValueError(function)
+
+
 def show(value: ScriptValue) -> str:
     """A value as messages print it."""
     match value:
@@ -228,5 +276,7 @@ def show(value: ScriptValue) -> str:
             return f"{value:.10g}"
         case ScriptPose():
             return f"pose({', '.join(f'{v:.10g}' for v in astuple(value))})"
+        case tuple():
+            return f"[{', '.join(map(show, value))}]"
         case _:
             return str(value)

@@ -12,6 +12,8 @@ from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.types import (
     BASE_UNIT,
+    ELEMENT,
+    LISTS,
     NUMBERS,
     POSE_FIELDS,
     QUANTITIES,
@@ -26,9 +28,14 @@ from pn2code.tdl.types import (
 FUNCTIONS: Final[dict[str, int]] = {
     "abs": 1, "min": 2, "max": 2, "floor": 1, "ceil": 1, "round": 1, "trunc": 1, "sqrt": 1,
     "real": 1, "sin": 1, "cos": 1, "tan": 1, "text": 1, "single": 1, "filled": 1, "pose": 6, "before": 2,
-    "computed": 1,
+    "computed": 1, "count_of": 1, "first_of": 1, "rest_of": 1, "item_of": 2, "with_first": 2, "joined": 2,
+    "reversed": 1,
 }  # fmt: skip
-"""Built-in functions and their numbers of arguments."""
+"""Built-in functions and their numbers of arguments; those that make lists, which have any number, are not among them.
+"""
+
+MAKES: Final[dict[str, Type]] = {of.value: of for of in LISTS - {Type.WORDS}}
+"""Functions that make lists: `ints(1, 2, 3)`."""
 
 RESERVED: Final = frozenset(FUNCTIONS) | frozenset(TYPES_BY_NAME) | {"world"}
 
@@ -188,7 +195,7 @@ def _binary(e: t.Binary, scope: Scope) -> Type | None:
         case "=" | "<>":
             result = Type.BOOL if fits(a, b) or fits(b, a) else None
         case "<" | "<=" | ">" | ">=":
-            ordered = a not in (Type.BOOL, Type.POSE)
+            ordered = a not in {Type.BOOL, Type.POSE, *LISTS}
             result = Type.BOOL if ordered and (fits(a, b) or fits(b, a)) else None
         case "&":
             result = Type.STRING if a is b is Type.STRING else None
@@ -210,6 +217,8 @@ def _binary(e: t.Binary, scope: Scope) -> Type | None:
 
 def _call(e: t.CallExpression, scope: Scope) -> Type | None:
     name = e.function
+    if name in MAKES:
+        return _made(e, MAKES[name], scope)
     if name not in FUNCTIONS:
         scope.d.error(
             codes.UNKNOWN_FUNCTION,
@@ -238,8 +247,45 @@ def _call(e: t.CallExpression, scope: Scope) -> Type | None:
     return _result(e, name, [x for x in types if x is not None], scope)
 
 
+def _made(e: t.CallExpression, of: Type, scope: Scope) -> Type:
+    for a in e.arguments:
+        found = type_of(a, scope)
+        if found is not None and not fits(found, ELEMENT[of]):
+            _argument(f"an item of `{of}`", ELEMENT[of], found, a, scope)
+    return of
+
+
+_OF_LISTS = ("count_of", "first_of", "rest_of", "item_of", "with_first", "joined", "reversed")
+
+
+def _of_list(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> Type | None:
+    first = types[0]
+    if first not in LISTS:
+        lists = ", ".join(f"`{x}`" for x in MAKES)
+        scope.d.error(
+            codes.TYPE,
+            f"the argument of `{name}` must be a list, but this is `{first}`",
+            e.arguments[0].span,
+            hint=f"lists are {lists}",
+        )
+        return None
+    wanted = {"item_of": Type.INT, "with_first": ELEMENT[first], "joined": first}.get(name)
+    if wanted is not None and types[1] is not wanted:
+        what = "the number of an item" if name == "item_of" else f"the second argument of `{name}`"
+        _argument(what, wanted, types[1], e.arguments[1], scope)
+    match name:
+        case "count_of":
+            return Type.INT
+        case "first_of" | "item_of":
+            return ELEMENT[first]
+        case _:
+            return first
+
+
 def _result(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> Type | None:
     first = types[0]
+    if name in _OF_LISTS:
+        return _of_list(e, name, types, scope)
     match name:
         case "pose":
             for (label, wanted), found, a in zip(
@@ -257,7 +303,7 @@ def _result(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> 
             return Type.STRING
         case "computed":
             return Type.BOOL
-        case "single" if first in QUANTITIES or first in (Type.REAL, Type.POSE):
+        case "single" if first in QUANTITIES or first in _ROUNDED:
             return first
         case "abs" if first in NUMBERS | QUANTITIES:
             return first
@@ -277,6 +323,9 @@ def _result(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> 
         wanted = Type.ANGLE if name in ("sin", "cos", "tan") else Type.REAL
         _argument(f"the argument of `{name}`", wanted, first, e.arguments[0], scope)
     return None
+
+
+_ROUNDED = (Type.REAL, Type.POSE, Type.REALS, Type.POSES)
 
 
 def _argument(what: str, wanted: Type, found: Type, a: t.Expression, scope: Scope) -> None:

@@ -91,7 +91,7 @@ loop: "loop" block "end" "loop"
      | TRUE -> true
      | FALSE -> false
      | NAME -> name
-     | (NAME | SINGLE) "(" expression ("," expression)* ")" -> function
+     | (NAME | SINGLE) "(" (expression ("," expression)*)? ")" -> function
      | "(" expression ")" -> parenthesised
 
 OR: "or"

@@ -332,11 +332,7 @@ class Interpreter:
             case t.NullDatum():
                 return None
             case _:
-                value = evaluate(x, self)
-                if isinstance(value, ScriptPose):
-                    numbers = map(real_to_json, astuple(value))
-                    return dict(zip(POSE_FIELDS, numbers, strict=True))
-                return real_to_json(value) if isinstance(value, float) else value
+                return _json(evaluate(x, self))
 
     # Commands
 
@@ -443,3 +439,17 @@ class Interpreter:
         if not isinstance(result, commands.Pose):
             raise ScriptError("the measurement gave no pose")
         self._assign(statement.target.name, from_si(result, asked, nominal))
+
+
+def _json(value: ScriptValue) -> Any:
+    """A value as traces write it."""
+    match value:
+        case ScriptPose():
+            numbers = map(real_to_json, astuple(value))
+            return dict(zip(POSE_FIELDS, numbers, strict=True))
+        case tuple():
+            return [_json(item) for item in value]
+        case float():
+            return real_to_json(value)
+        case _:
+            return value

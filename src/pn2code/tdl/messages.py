@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import astuple
-from typing import Any
+from typing import Any, cast
 
 import pn2code.robot.commands as commands
 from pn2code.tdl import tree as t
-from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, single
+from pn2code.tdl.evaluate import Element, ScriptError, ScriptPose, ScriptValue, single
 from pn2code.tdl.requests import Scalar
-from pn2code.tdl.types import Type
+from pn2code.tdl.types import ELEMENT, POSE_FIELDS, Type
 
 
 def to_si(pose: ScriptPose) -> commands.Pose:
@@ -61,7 +61,9 @@ def stored_value(value: ScriptValue, kind: t.TypeName) -> ScriptValue:
 
 
 def scalars_of(value: ScriptValue) -> tuple[Scalar, ...]:
-    """The scalars of a message: of a pose its six components, in mm and degrees."""
+    """The scalars of a message: of a pose its six components, in mm and degrees; of a list how many, and its items."""
+    if isinstance(value, tuple):
+        return (len(value), *(x for item in value for x in scalars_of(item)))
     return astuple(value) if isinstance(value, ScriptPose) else (value,)
 
 
@@ -76,10 +78,11 @@ def typed_values(
             if kind.type is Type.SIGNAL:
                 rest.pop(0)
                 continue
-            if kind.type is Type.POSE:
-                values.append(ScriptPose(*(scalar_of(rest.pop(0), Type.REAL) for _ in range(6))))
+            if kind.type in ELEMENT:
+                count = scalar_of(rest.pop(0), Type.INT)
+                values.append(tuple(_taken(rest, ELEMENT[kind.type]) for _ in range(count)))
             else:
-                values.append(scalar_of(rest.pop(0), kind.type))
+                values.append(_taken(rest, kind.type))
         if rest:
             raise ValueError
     except (IndexError, ValueError):
@@ -89,6 +92,13 @@ def typed_values(
             f"file `{name}` holds `{words}`, but the script expects {wanted}"
         ) from None
     return values
+
+
+def _taken(rest: list[Scalar], kind: Type) -> Element:
+    """A value from the beginning of a message."""
+    if kind is Type.POSE:
+        return ScriptPose(*(scalar_of(rest.pop(0), Type.REAL) for _ in POSE_FIELDS))
+    return cast(Element, scalar_of(rest.pop(0), kind))
 
 
 def scalar_of(x: Scalar, kind: Type) -> Any:

@@ -27,6 +27,14 @@ class Type(Enum):
     SPEED = "speed"
     WORD = "word"
     """A constructor's name, in a message without quotes, in the script a string: only files can be of this type."""
+    INTS = "ints"
+    """A list, as the next five."""
+    REALS = "reals"
+    BOOLS = "bools"
+    STRINGS = "strings"
+    POSES = "poses"
+    WORDS = "words"
+    """A list of constructors' names: only files can be of this type."""
     SIGNAL = "signal"
     """The message without content: only files can be of this type."""
 
@@ -38,6 +46,20 @@ class Type(Enum):
 NUMBERS = frozenset({Type.INT, Type.REAL})
 QUANTITIES = frozenset({Type.LENGTH, Type.ANGLE, Type.TIME, Type.SPEED})
 TYPES_BY_NAME: dict[str, Type] = {t.value: t for t in Type}
+
+ELEMENT: dict[Type, Type] = {
+    Type.INTS: Type.INT,
+    Type.REALS: Type.REAL,
+    Type.BOOLS: Type.BOOL,
+    Type.STRINGS: Type.STRING,
+    Type.POSES: Type.POSE,
+    Type.WORDS: Type.WORD,
+}
+"""What the elements of a list are."""
+LIST_OF: dict[Type, Type] = {element: of for of, element in ELEMENT.items()}
+LISTS = frozenset(ELEMENT)
+IN_SCRIPT: dict[Type, Type] = {Type.WORD: Type.STRING, Type.WORDS: Type.STRINGS}
+"""What values of types that only files can have are in the script."""
 
 BASE_UNIT: dict[Type, str] = {
     Type.LENGTH: "mm",

@@ -9,7 +9,17 @@ from random import Random
 import pytest
 
 from helpers.robots import Cell
-from helpers.script_forms import EXTRA, FORMS, SENSORS, SITES, difference, random_form, script_page
+from helpers.script_forms import (
+    EXTRA,
+    FORMS,
+    LIST_FORMS,
+    SENSORS,
+    SITES,
+    difference,
+    random_form,
+    script_page,
+)
+from helpers.thorough import amount
 
 # Each form at two places, each place with several forms.
 CASES = chain.from_iterable(
@@ -28,6 +38,21 @@ def test_random_expressions(tmp_path: Path, seed: int) -> None:
     """More of them: `./dev fuzz --scripts N`."""
     random = Random(seed)
     site, form = random.choice(SITES), random_form(random)
+    assert difference(tmp_path, site, form) == "", f"{site}: {form}"
+
+
+@pytest.mark.parametrize(("i", "form"), [*enumerate(LIST_FORMS)])
+def test_lists_fail_where_they_do_in_the_net(tmp_path: Path, i: int, form: str) -> None:
+    for k, site in enumerate((SITES[i % len(SITES)], SITES[(i * 5 + 7) % len(SITES)])):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        assert difference(folder, site, form) == "", site
+
+
+@pytest.mark.parametrize("seed", range(7000, 7000 + amount(16, 600)))
+def test_random_expressions_with_lists(tmp_path: Path, seed: int) -> None:
+    random = Random(seed)
+    site, form = random.choice(SITES), random_form(random, lists=0.5)
     assert difference(tmp_path, site, form) == "", f"{site}: {form}"
 
 

@@ -667,10 +667,20 @@ REFUSED = {
         (),
         "error[unsupported-robot-time] no robot can wait for -3 s",
     ),
-    "list": (
-        "place A : INTS = 1`[1]\ntrans T\n  both A : l",
+    "list of lists": (
+        "place A : ROWS = 1`[[1]]\ntrans T\n  both A : rows",
         (),
-        "error[unsupported-robot-colset] place `A` has colour set `INTS`, which robot scripts do not have",
+        "error[unsupported-robot-colset] place `A` has colour set `ROWS`, which robot scripts do not have",
+    ),
+    "list of records": (
+        "place A : PAIRS = 1`[]\ntrans T\n  both A : pairs",
+        (),
+        "error[unsupported-robot-colset] place `A` has colour set `PAIRS`, which robot scripts do not have",
+    ),
+    "function on lists": (
+        "place A = 1\ntrans T\n  both A\n  in x : n\n  out y : hd (List.take ([n, 1], 1))",
+        ("x in INT", "y out INT"),
+        "error[unsupported-robot-expression] `List.take` cannot be used in a robot script",
     ),
     "sine": (
         "place A = 1\ntrans T\n  both A\n  in r : w\n  out y : Math.sin w",
@@ -706,6 +716,11 @@ REFUSED = {
 EXTRA = """
 colset TUNIT = unit timed;
 colset INTS = list INT;
+colset ROWS = list INTS;
+colset PAIR = product INT * INT;
+colset PAIRS = list PAIR;
+var rows : ROWS;
+var pairs : PAIRS;
 var l : INTS;
 fun fac 0 = 1 | fac n = n * fac (n - 1);
 fun part (n, true) = n | part (1, false) = 2;

@@ -13,6 +13,7 @@ EXTRA = """
   colset INTS = list INT;
   colset SMALLS = list SMALL;
   colset PAIR = product SMALL * SMALLS;
+  colset PAIRS = list PAIR;
   colset KIND = with left | right;
   exception Odd;
   var small : SMALL;  var kind : KIND;  var ints : INTS;
@@ -31,8 +32,8 @@ PAGE = """
 """
 LEFT_OUT = {
     "a text": ("STRING", "small", "told small"),
-    "a list": ("INTS", "small", "[small, small + 1]"),
-    "a list of a colour set": ("SMALLS", "small", "[small, 2, (small + 1) mod 4]"),
+    "a list": ("PAIRS", "small", "[(small, [small]), (small, [])]"),
+    "a list of a colour set": ("SMALLS", "small", "[small, 2, small]"),
     "a part": ("PAIR", "small", "(small, [small])"),
     "an alternative": ("SMALLS", "small", "if small > 1 then [small] else []"),
     "all constructors": ("STRING", "kind", "named kind"),
@@ -40,10 +41,29 @@ LEFT_OUT = {
 REFUSED = {
     "head of a list": ("INT", "small", "hd (List.tabulate (small, fn u => u))"),
     "an exception": ("INT", "small", "odd small"),
-    "a sum that is too large": ("INTS", "k", "[k + 1]"),
+    "a sum that is too large": ("PAIRS", "k", "[(if k + 1 > 0 then 1 else 0, [])]"),
     "not in the colour set": ("SMALLS", "small", "[small + 1]"),
     "a list that grows": ("SMALLS", "small", "small :: List.tabulate (2, fn u => u)"),
 }
+
+
+COMPUTED = {
+    "a list": ("INTS", "small", "[small, small + 1]", "compute small + 1"),
+    "a sum that may be too large": ("INTS", "k", "[k + 1]", "compute k + 1"),
+    "the head of a list": ("INT", "k", "hd (if k > 0 then [k] else [])", "compute first_of("),
+}
+"""Lists that scripts have."""
+
+
+@pytest.mark.parametrize("what", COMPUTED)
+def test_lists_that_scripts_have_are_computed(what: str, tmp_path: Path) -> None:
+    colset, taken, put, expected = COMPUTED[what]
+    place = {"small": "SMALL", "k": "INT"}[taken]
+    page = PAGE.format(colset=colset, taken=taken, put=put)
+    cell = Cell(
+        tmp_path, page, (f"x in {place}", "y out INT"), extra=f"{EXTRA}  var x : {place};\n"
+    )
+    assert cell.messages == [] and expected in cell.body
 
 
 @pytest.mark.parametrize("what", LEFT_OUT)

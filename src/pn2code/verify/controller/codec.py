@@ -16,8 +16,8 @@ from pathlib import Path
 import pn2code
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
-from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
-from pn2code.channels.scalars import ScalarValue
+from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars
+from pn2code.channels.scalars import ScalarValue, Walk, scalars_of_values
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import supervisor as emit_supervisor
 from pn2code.toolchain import programs
@@ -50,7 +50,8 @@ class Codec:
     def __init__(self, program: Path, partition: Partition) -> None:
         self._program = program
         self._scalars = [
-            scalars_of(partition.net.places[c.place].colset) or () for c in channels_of(partition)
+            message_scalars(partition.net.places[c.place].colset) or ()
+            for c in channels_of(partition)
         ]
 
     def write(
@@ -59,7 +60,7 @@ class Codec:
         """The files of messages: (channel, number, values), channels in the order of `channels_of`."""
         asked = []
         for channel, seq, values in messages:
-            words = map(_word, self._scalars[channel], values)
+            words = map(_word, scalars_of_values(self._scalars[channel], values) or (), values)
             asked.append(" ".join(["write", str(channel), str(seq), *words]))
         return [None if a == "unwritable" else bytes.fromhex(a) for a in self._asked(asked)]
 
@@ -73,8 +74,14 @@ class Codec:
         what, *words = answer.split()
         if what == "message":
             seq, *values = words
-            found = tuple(map(_value, self._scalars[channel], values))
-            return Read(what, None if seq == "-" else int(seq), found)
+            found, walk = [], Walk(self._scalars[channel])
+            for word in values:
+                scalar = walk.next()
+                assert scalar is not None, "the codec gives as many values as there are"
+                found.append(_value(scalar, word))
+                if scalar.kind is ScalarKind.LIST:
+                    walk.enter(scalar, int(word))
+            return Read(what, None if seq == "-" else int(seq), tuple(found))
         return Read(answer)
 
     def _asked(self, lines: Sequence[str]) -> list[str]:

@@ -4,8 +4,9 @@ state space, put through the codecs of both sides.
 examine(partition, found, d)      # Format("no", "the message ... of channel `flag` cannot be sent: ...", ...)
 
 A channel whose colour set alone bounds the text of its tokens (whole numbers, booleans, names) needs no state space. Of
-reals (not finite, out of a range after rounding), strings (too long) and unlimited integers (more than 64 bits) each
-value that the state space shows is written and read by the compiled codec of the supervisor and by that of the robots.
+reals (not finite, out of a range after rounding), strings and lists (too long) and unlimited integers (more than 64
+bits) each value that the state space shows is written and read by the compiled codec of the supervisor and by that of
+the robots.
 """
 
 from __future__ import annotations
@@ -15,9 +16,16 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
-from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars, most_values
+from pn2code.cell.token_values import message_values
 from pn2code.channels.message import MAX_PAYLOAD, Message, compose, parse, specs_of
-from pn2code.channels.scalars import ScalarValue, format_scalars, quote, scalars_of_json
+from pn2code.channels.scalars import (
+    MOST_VALUES,
+    ScalarValue,
+    format_scalars,
+    quote,
+    scalars_of_values,
+)
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.verify.controller.codec import MOST_SEQ, SESSION, channels_of, codec
@@ -55,10 +63,13 @@ class Unsendable:
 
 def longest(colset: Colset) -> int | None:
     """Characters of the longest text of a token of which each can be written and read back; None: its values decide."""
-    scalars = scalars_of(colset)
+    scalars = message_scalars(colset)
     if scalars is None or _is_unlimited(colset):
         return None
-    lengths = [_longest(s) for s in scalars]
+    most = most_values(scalars)
+    if most is None or most > MOST_VALUES:
+        return None
+    lengths = [_longest(x) for s in scalars for x in (s, *s.elements * int(s.high or 0))]
     known = [n for n in lengths if n is not None]
     return sum(known) + len(known) - 1 if len(known) == len(lengths) else None
 
@@ -69,6 +80,8 @@ def _longest(scalar: Scalar) -> int | None:
             return 1
         case ScalarKind.INT | ScalarKind.INDEX:
             return _INTEGER
+        case ScalarKind.LIST:
+            return len(str(MOST_VALUES))
         case ScalarKind.ENUM:
             return max(map(len, scalar.names))
         case _:
@@ -122,8 +135,8 @@ def _unsendable(partition: Partition, channel: Channel, value: Any, why: str) ->
 
 def _shown(colset: Colset, value: Any) -> str:
     """A message, not longer than some sixty characters."""
-    values = tuple(scalars_of_json(value))
-    text = format_scalars(scalars_of(colset) or (), values)
+    values = tuple(message_values(colset, value))
+    text = format_scalars(message_scalars(colset) or (), values)
     return quote(text if text is not None else " ".join(map(str, values)))
 
 
@@ -134,7 +147,8 @@ def _wrong(
     specs = specs_of(partition)
     fine: list[tuple[int, Any, tuple[ScalarValue, ...], str]] = []
     for index, value in asked:
-        spec, values = specs[index], tuple(scalars_of_json(value))
+        colset = partition.net.places[partition.channels[index].place].colset
+        spec, values = specs[index], tuple(message_values(colset, value))
         text = compose(spec, values, seq=MOST_SEQ, session=SESSION)
         if text is None:
             yield partition.channels[index], value, _reason(spec.scalars, values)
@@ -159,8 +173,10 @@ def _wrong(
 
 def _reason(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str:
     """Why a message cannot be written."""
-    for scalar, value in zip(scalars, values, strict=False):
-        if format_scalars((scalar,), (value,)) is None:
+    if len(values) > MOST_VALUES:
+        return f"it has {len(values):,} values, but at most {MOST_VALUES} are possible"
+    for scalar, value in zip(scalars_of_values(scalars, values) or (), values, strict=False):
+        if scalar.kind is not ScalarKind.LIST and format_scalars((scalar,), (value,)) is None:
             where = f"`{scalar.label}` of colour set `{scalar.colset}`"
             if scalar.kind is ScalarKind.REAL and isinstance(value, str):
                 return f"{where} is not a finite number"

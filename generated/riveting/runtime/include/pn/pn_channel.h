@@ -66,6 +66,21 @@ typedef struct pn_message {
  * the length (without the terminator), 0 when it does not fit. */
 size_t pn_real_format(double value, char *out, size_t capacity);
 
+/* Goes along the scalars of a token: those of a list's elements come as often as it is long. Begin with
+ * { scalar, scalar_count, 0U, 0U, 0U, 0U }. */
+typedef struct pn_scalar_walk {
+    const pn_scalar_t *scalar;
+    uint32_t count;
+    uint32_t next;
+    uint32_t first, end; /* of an element of the list that is gone through */
+    uint32_t left;       /* of its elements, the one that is gone through included */
+} pn_scalar_walk_t;
+
+/* The scalar of the next value; NULL at the end. */
+const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk);
+/* The value of what it gave last: that of a list says how often its elements come. */
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value);
+
 /* The scalars separated by one blank. Returns the length; 0 when it does not fit, or when a reader would refuse a
  * scalar: it is not finite, out of its range, no constructor. */
 size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_scalar_value_t *scalar_value, char *out,

@@ -139,7 +139,9 @@ uint32_t pn_scalar_count(const pn_type_t *type);
  * not at all. */
 uint32_t pn_line_count(const pn_type_t *type);
 uint32_t pn_line_scalars(const pn_type_t *type, uint32_t line);
-/* Number of scalars written, 0 if there are more than `capacity` or no fixed number. */
+/* How many scalars describe a message: a list is one, and those of an element; 0: no message can hold a value. */
+uint32_t pn_message_scalars(const pn_type_t *type);
+/* Number of scalars written, 0 if there are more than `capacity`, or no message can hold the value. */
 uint32_t pn_to_scalars(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity);
 /* A value from its scalars. False (PN_ERR_COLOUR) when kinds, numbers or ranges do not fit. */
 bool pn_from_scalars(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,

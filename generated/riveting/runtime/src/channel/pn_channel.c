@@ -73,6 +73,65 @@ const char *pn_quote(const char *data, size_t length, char *out, size_t capacity
     return out;
 }
 
+#ifdef PN_FLAT_TYPES /* no message has a list */
+const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk)
+{
+    const uint32_t at = walk->next;
+    walk->next += (at < walk->count) ? 1U : 0U;
+    return (at < walk->count) ? &walk->scalar[at] : NULL;
+}
+
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value)
+{
+    (void)walk;
+    (void)scalar_value;
+}
+
+static uint32_t values_left(const pn_scalar_walk_t *walk)
+{
+    return walk->count - walk->next;
+}
+#else
+const pn_scalar_t *pn_scalar_next(pn_scalar_walk_t *walk)
+{
+    if ((walk->left > 0U) && (walk->next == walk->end)) {
+        walk->left--;
+        walk->next = (walk->left > 0U) ? walk->first : walk->end;
+    }
+    const uint32_t at = walk->next;
+    walk->next += (at < walk->count) ? 1U : 0U;
+    return (at < walk->count) ? &walk->scalar[at] : NULL;
+}
+
+static void enter(pn_scalar_walk_t *walk, uint32_t length)
+{
+    const pn_scalar_t *const last = &walk->scalar[walk->next - 1U];
+    if (last->kind == PN_SCALAR_LIST) {
+        walk->first = walk->next;
+        walk->end = walk->next + last->element_count;
+        walk->left = length;
+        walk->next = (length > 0U) ? walk->first : walk->end;
+    }
+}
+
+void pn_scalar_is(pn_scalar_walk_t *walk, const pn_scalar_value_t *scalar_value)
+{
+    enter(walk, (uint32_t)scalar_value->integer);
+}
+
+/* How many values are still to come at least: other lists may be empty. */
+static uint32_t values_left(const pn_scalar_walk_t *walk)
+{
+    pn_scalar_walk_t rest = *walk;
+    uint32_t count = 0U;
+    while (pn_scalar_next(&rest) != NULL) {
+        enter(&rest, 0U);
+        count++;
+    }
+    return count;
+}
+#endif
+
 /* --- writing ------------------------------------------------------------------------------------------------------ */
 
 /* With `digits` significant digits; whether that reads back to the same number. */
@@ -150,6 +209,7 @@ static size_t scalar_format(const pn_scalar_t *scalar, const pn_scalar_value_t *
     case PN_SCALAR_UNIT: length = snprintf(out, capacity, "1"); break;
     case PN_SCALAR_BOOL: length = snprintf(out, capacity, "%d", (scalar_value->integer != 0) ? 1 : 0); break;
     case PN_SCALAR_INT:
+    case PN_SCALAR_LIST:
     case PN_SCALAR_INDEX:
         if (!scalar->bounded || ((scalar_value->integer >= scalar->low) && (scalar_value->integer <= scalar->high))) {
             length = snprintf(out, capacity, "%" PRId64, scalar_value->integer);
@@ -176,18 +236,24 @@ size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_sca
                          size_t capacity)
 {
     size_t at = 0U;
-    for (uint32_t i = 0U; i < count; i++) {
+    pn_scalar_walk_t walk = { scalar, count, 0U, 0U, 0U, 0U };
+    const pn_scalar_t *own = pn_scalar_next(&walk);
+    uint32_t i = 0U;
+    while (own != NULL) {
         if (at + 2U >= capacity) {
             return 0U;
         }
         if (i > 0U) {
             out[at++] = ' ';
         }
-        const size_t length = scalar_format(&scalar[i], &scalar_value[i], out + at, capacity - at);
+        const size_t length = scalar_format(own, &scalar_value[i], out + at, capacity - at);
         if (length == 0U) {
             return 0U;
         }
+        pn_scalar_is(&walk, &scalar_value[i]);
         at += length;
+        i++;
+        own = pn_scalar_next(&walk);
     }
     return at;
 }
@@ -333,6 +399,26 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_s
     return true;
 }
 
+#ifndef PN_FLAT_TYPES
+/* How many elements a list has: decimal digits, as few as there can be. No message has as many as to need three. */
+static bool length_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                         pn_message_t *out)
+{
+    bool good = (word->length <= 2U) && ((word->length == 1U) || (word->text[0] != '0'));
+    for (size_t i = 0U; good && (i < word->length); i++) {
+        const int digit = word->text[i] - '0';
+        good = is_digit(word->text[i]);
+        scalar_value->integer = (scalar_value->integer * 10) + (int64_t)digit;
+    }
+    if (!good || (scalar_value->integer < scalar->low) || (scalar_value->integer > scalar->high)) {
+        refuse_word(out, scalar, word, "is no length of a list of ", "");
+        return false;
+    }
+    return true;
+}
+
+#endif
+
 static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
                        pn_message_t *out)
 {
@@ -457,6 +543,12 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_sc
         scalar_value->kind = PN_VALUE_INT;
         good = integer_parse(scalar, word, scalar_value, out);
         break;
+#ifndef PN_FLAT_TYPES
+    case PN_SCALAR_LIST:
+        scalar_value->kind = PN_VALUE_LIST;
+        good = length_parse(scalar, word, scalar_value, out);
+        break;
+#endif
     case PN_SCALAR_INDEX:
         scalar_value->kind = PN_VALUE_ENUM;
         good = integer_parse(scalar, word, scalar_value, out);
@@ -473,6 +565,9 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_sc
         scalar_value->kind = PN_VALUE_ENUM;
         good = enum_parse(scalar, word, scalar_value, out);
         break;
+#ifdef PN_FLAT_TYPES
+    case PN_SCALAR_LIST:
+#endif
     default: refuse(out, PN_REFUSAL_SCALAR, word->column, "unknown kind of scalar"); break;
     }
     return good;
@@ -509,30 +604,42 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
     char shown[160];
     char name[NAMED_MAX];
     pn_word_t word = { line, 0U, 1U };
+    pn_scalar_walk_t walk = { scalar, count, 0U, 0U, 0U, 0U };
+    const pn_scalar_t *own = pn_scalar_next(&walk);
     size_t at = 0U;
     uint32_t i = 0U;
     while (next_word(line, length, true, &at, &word)) {
-        if (i == count) {
+        if (own == NULL) {
             refuse(out, PN_REFUSAL_COUNT, word.column, "found %s after the %" PRIu32 " value%s that belong here",
-                   pn_quote(word.text, word.length, shown, sizeof shown), count, (count == 1U) ? "" : "s");
+                   pn_quote(word.text, word.length, shown, sizeof shown), i, (i == 1U) ? "" : "s");
             return false;
         }
         if (out->count >= PN_CHANNEL_SCALARS) {
-            refuse(out, PN_REFUSAL_SHAPE, word.column, "%s is one value too many",
+            refuse(out, PN_REFUSAL_COUNT, word.column, "%s is one value too many",
                    pn_quote(word.text, word.length, shown, sizeof shown));
             return false;
         }
-        if (!scalar_parse(&scalar[i], &word, &out->value[out->count], out)) {
+        pn_scalar_value_t *const value = &out->value[out->count];
+        if (!scalar_parse(own, &word, value, out)) {
             return false;
         }
+        pn_scalar_is(&walk, value);
+#ifndef PN_FLAT_TYPES
+        if ((value->kind == PN_VALUE_LIST) && (out->count + 1U + values_left(&walk) > PN_CHANNEL_SCALARS)) {
+            refuse(out, PN_REFUSAL_COUNT, word.column, "%s makes more than the %u values that are possible",
+                   pn_quote(word.text, word.length, shown, sizeof shown), PN_CHANNEL_SCALARS);
+            return false;
+        }
+#endif
         out->column_of[out->count] = (uint32_t)word.column;
         out->count++;
         i++;
+        own = pn_scalar_next(&walk);
     }
-    if (i < count) {
+    if (own != NULL) {
         refuse(out, PN_REFUSAL_COUNT, length + 1U,
                "found %" PRIu32 " value%s where %" PRIu32 " are expected; the next would be %s", i,
-               (i == 1U) ? "" : "s", count, named(&scalar[i], name));
+               (i == 1U) ? "" : "s", i + 1U + values_left(&walk), named(own, name));
         return false;
     }
     return true;

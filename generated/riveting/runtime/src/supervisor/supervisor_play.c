@@ -244,7 +244,7 @@ const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, c
     pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     const uint32_t count =
         pn_multiset_token(sup->net->place[channel->place].multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS);
-    if ((count != channel->scalar_count)
+    if ((count == 0U)
         || (pn_scalars_format(channel->scalar, channel->scalar_count, scalar_value, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");
     }

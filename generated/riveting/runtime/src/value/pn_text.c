@@ -195,6 +195,7 @@ void pn_text_json_scalar(pn_text_t *text, const pn_scalar_value_t *scalar_value)
         }
         break;
     case PN_VALUE_INT:
+    case PN_VALUE_LIST:
     default: pn_text_int(text, scalar_value->integer); break;
     }
 }

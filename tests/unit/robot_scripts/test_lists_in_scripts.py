@@ -1,0 +1,126 @@
+"""Lists on a robot's page: what the script has for them, what it asks of them, and what it cannot have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.robots import Cell
+
+EXTRA = """
+colset SMALL = int with 0..9;
+colset NUMBERS = list INT;
+colset SHORT = list INT with 0..2;
+colset DIGITS = list SMALL with 0..3;
+colset FLAGS = list BOOL with 0..2;
+var l, rest : NUMBERS;
+var few, fewer : SHORT;
+var digits, others : DIGITS;
+var seen : FLAGS;
+"""
+
+
+def cell(folder: Path, page: str, channels: tuple[str, ...] = (), toml: str = "") -> Cell:
+    # The other side of channels of lists calls its variable so.
+    own = next((c.split()[2] for c in channels if c.split()[2] != "INT"), "INT")
+    return Cell(folder, page, channels, extra=f"{EXTRA}var x : {own};\n", toml=toml)
+
+
+def test_a_list_is_gone_along(tmp_path: Path) -> None:
+    page = """
+    place Idle = 1
+    place Todo : NUMBERS
+    trans Accept
+      in Idle
+      in x : l
+      out Todo : l
+    trans Next
+      in Todo : n :: rest
+      out Todo : rest
+      out y : n
+    trans Over
+      in Todo : []
+      out Idle
+    """
+    found = cell(tmp_path, page, ("x in NUMBERS", "y out INT"))
+    assert found.messages == [] and found.ir is not None
+    assert 'input  x "x.robcad" : ints' in found.text
+    assert "while count_of(todo) <> 0 loop" in found.body
+    assert "write y first_of(todo) todo := rest_of(todo)" in " ".join(found.body.split())
+    assert "compute" not in found.body, "the pattern has seen that there is an item"
+
+
+@pytest.mark.parametrize(
+    ("guard", "put", "expected"),
+    [
+        ("", "hd l", "compute first_of(l)"),
+        (" guard [l <> []]", "hd l", ""),
+        (" guard [length l > 1]", "hd (tl l)", "compute first_of(rest_of(l))"),
+        (" guard [length l > 2]", "List.nth (l, 2)", ""),
+        ("", "length l", ""),
+    ],
+)  # fmt: skip
+def test_what_may_not_be_there_is_computed_beforehand(
+    tmp_path: Path, guard: str, put: str, expected: str
+) -> None:
+    page = f"""
+    place Idle = 1
+    place Held : NUMBERS
+    trans Accept
+      in Idle
+      in x : l
+      out Held : l
+    trans Go{guard}
+      in Held : l
+      out y : {put}
+      out Idle
+    """
+    found = cell(tmp_path, page, ("x in NUMBERS", "y out INT"))
+    assert found.ir is not None, found.messages
+    assert (expected in found.body) if expected else ("compute" not in found.body)
+
+
+def test_how_long_a_list_may_be_is_asked(tmp_path: Path) -> None:
+    page = """
+    place Held : SHORT = 1`[]
+    place Other : SHORT
+    trans Longer
+      in x : n
+      in Held : few
+      out Other : n :: few
+    trans Shorter
+      in Other : n :: fewer
+      out Held : fewer
+    """
+    found = cell(tmp_path, page, ("x in INT",))
+    assert found.ir is not None, found.messages
+    stop = "if not count_of(with_first(few, n)) <= 2 then stop"
+    assert " ".join(found.body.split()).count(stop) == 1, found.body
+
+
+def test_items_that_are_in_their_colour_set(tmp_path: Path) -> None:
+    page = """
+    place Held : DIGITS = 1`[]
+    trans Turn
+      in x : digits
+      in Held : others
+      out Held : if length digits > 1 then tl digits else rev digits
+    """
+    assert cell(tmp_path, page, ("x in DIGITS",)).ir is not None
+    page = page.replace("if length digits > 1 then tl digits else rev digits", "digits ^^ others")
+    found = cell(tmp_path, page, ("x in DIGITS",))
+    assert found.ir is None
+    assert "a script cannot ask whether a value is in it" in found.messages[0]
+
+
+def test_a_list_is_no_value_of_a_sensor(tmp_path: Path) -> None:
+    page = """
+    place Idle = 1
+    trans Look
+      both Idle
+      out y : seen
+    """
+    found = cell(tmp_path, page, ("y out FLAGS",), '[sensors.eye]\nvariable = "seen"\n')
+    assert found.ir is None
+    assert "a sensor gives one number, truth value or text" in found.messages[0]
