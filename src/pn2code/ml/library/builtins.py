@@ -267,7 +267,7 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 """
 
 UTILITIES = frozenset(
-    "Base64 GetOpt IOUtil PathUtil RealOrderStats SplayTree UnivariateStats".split()
+    {"Base64", "GetOpt", "IOUtil", "PathUtil", "RealOrderStats", "SplayTree", "UnivariateStats"}
 )
 """Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
 
