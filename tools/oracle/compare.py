@@ -92,6 +92,7 @@ UNENTERED = Verdict(
 )
 ORDER = Verdict("engine", "it asks conditions in another order, which was warned of")
 ORDER_WARNING = "guard-order"
+SHARED_WARNING = "arcs-share-variables"
 SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
 ENTERING = "Exception raised entering state space tool"
 SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
@@ -141,14 +142,15 @@ class Seen:
             return NOTHING
         wrong = [e for e in answer["errors"] if not self._warns(e)]
         if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
-            return ENGINE
+            said = SHARED_WARNING in self.codes
+            return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(e["message"].startswith(REPEATS) for e in wrong):
             said = "guard-equation-repeats" in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(DECLARES.match(e["message"]) for e in wrong):
             said = "declaration-in-inscription" in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
-        if wrong and all(self._grouped(e) for e in wrong):
+        if wrong and SHARED_WARNING in self.codes and all(self._grouped(e) for e in wrong):
             return GROUPS
         if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":
             return NOTHING

@@ -14,17 +14,25 @@ gives
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
+from pn2code.net import engine_guards
 from pn2code.net.codes import (
+    ARCS_SHARE,
     BINDING_CIRCLE,
     CODE_OUTPUT_BOUND,
+    ENGINE_CODE,
+    GUARD_REPEATS,
     LOCAL_NAME,
     SUMMANDS_SHARE,
     UNBOUND_VARIABLE,
 )
+from pn2code.net.engine_binding import Answer, PlaceNode, TakingArc, examine
+from pn2code.net.engine_code import loses_parentheses
+from pn2code.net.engine_parts import PartReader
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
     ArcInscription,
@@ -36,10 +44,10 @@ from pn2code.net.flat import (
     BindTerm,
     CodeSegment,
 )
-from pn2code.net.sequence import Names, stuck
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
 
+TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 HERE = "the transition is here"
 RENAME = "use another name here, one that is no variable of the net"
 
@@ -67,7 +75,13 @@ class _Equation:
 
 @frozen
 class Parts:
-    """What of a transition matters for binding; arcs are (kind, inscription or None)."""
+    """What of a transition matters for binding.
+
+    Args:
+        arcs: (kind, inscription or None).
+        written: how many of the guards are those that are written, the first ones.
+        places: those of the arcs; None: what CPN Tools says does not matter.
+    """
 
     name: str
     origin: Origin
@@ -76,6 +90,8 @@ class Parts:
     delay: Exp | None
     code: CodeSegment | None
     code_span: Span | None
+    written: int = 0
+    places: Sequence[PlaceNode] | None = None
 
 
 class Planner:
@@ -83,7 +99,6 @@ class Planner:
 
     Args:
         declared: names of colour sets with `declare all`, enumerated at any size.
-        is_pnml: whether what CPN Tools finds no order for is no error.
     """
 
     def __init__(
@@ -92,10 +107,7 @@ class Planner:
         terms: TermReader,
         declared: frozenset[str],
         d: Diagnostics,
-        *,
-        is_pnml: bool = False,
     ) -> None:
-        self.is_pnml = is_pnml
         self.variables = variables
         self.terms = terms
         self.declared = declared
@@ -121,7 +133,9 @@ class Planner:
         everything = merge([needed, *outputs, self.variables.of(parts.delay)])
         free = {s: at for s, at in everything.items() if s not in results}
         steps = self.steps(parts, needed, free)
-        if steps is None or not (self.is_pnml or self.check_sequence(parts, free)):
+        if steps is None:
+            return None
+        if parts.places is not None and not self.check_engine(parts, parts.places, free):
             return None
         self.warn_of_local_names(parts, steps, free)
         ordered = sorted(free, key=lambda s: (s.name, s.uid))
@@ -157,35 +171,90 @@ class Planner:
             )
         return not clashes
 
-    def check_sequence(self, parts: Parts, free: Uses) -> bool:
-        """Refuse what the engine finds no order for: it tries all values only where nothing could bind a variable."""
-        arcs: dict[int, list[Names]] = {}
-        for b in self.binders(parts):
-            arcs.setdefault(b.arc, []).append(frozenset(b.variables))
-        equations = [(frozenset(q.variables), q.needs) for q in self.equations(parts)]
-        counted = self.counted(parts)
-        if not counted and not equations and all(len(summands) < 2 for summands in arcs.values()):
+    def check_engine(self, parts: Parts, places: Sequence[PlaceNode], free: Uses) -> bool:
+        """Refuse what CPN Tools refuses, with its reasons; warn of what it cannot check or takes for something else."""
+        arcs = [
+            TakingArc(kind, place, inscription)
+            for (kind, inscription), place in zip(parts.arcs, places, strict=True)
+            if inscription is not None and kind in TAKING
+        ]
+        if not parts.written and self.is_evident(arcs):
+            self.warn_of_code(parts, arcs)
             return True
-        wanted = counted.union(
-            *(s for summands in arcs.values() for s in summands), *(s for s, _ in equations)
+        reader = PartReader(self.variables, self.terms)
+        answer = examine(arcs, parts.guards[: parts.written], reader, self.is_small)
+        if answer.parted is not None:
+            later, earlier = (arcs[i].inscription.origin for i in answer.parted)
+            self.warn_of_shared(parts, answer.kind, later, earlier)
+        elif (
+            answer.kind == "repeats"
+            and engine_guards.repeated(parts.guards, self.terms, self.variables) is None
+        ):
+            self.d.warning(
+                GUARD_REPEATS,
+                f"CPN Tools cannot check transition `{parts.name}`: a coefficient on one of its arcs has a variable "
+                "twice, and what it counts is no pattern",
+                parts.origin,
+                hint="compute the coefficient by a function, or give it a name in the guard: `[n = x * x]`",
+            )
+        elif answer.kind in ("stuck", "large"):
+            self.refuse(parts, answer, arcs, free)
+            return False
+        if answer.kind == "":
+            self.warn_of_code(parts, arcs)
+        return True
+
+    def warn_of_code(self, parts: Parts, arcs: Sequence[TakingArc]) -> None:
+        """Of arcs of which CPN Tools makes code that it cannot compile."""
+        for i, value in loses_parentheses(arcs):
+            text = " ".join(value.span.text.split())
+            self.d.warning(
+                ENGINE_CODE,
+                f"CPN Tools accepts transition `{parts.name}`, but cannot compile the code that it makes of it, or "
+                f"takes it for something else: it writes `{text}` without parentheses",
+                arcs[i].inscription.origin,
+                notes=[Note(HERE, parts.origin)],
+                hint="put a variable there, and give it this value in the guard: `v = ...`",
+            )
+
+    def is_evident(self, arcs: Sequence[TakingArc]) -> bool:
+        """Whether an order is found whatever the variables are: without a guard, by an arc with one summand."""
+        terms = [t for arc in arcs for t in arc.inscription.terms]
+        return len(terms) < 2 and not any(self.variables.seen(t.coefficient) for t in terms)
+
+    def warn_of_shared(self, parts: Parts, kind: str, later: Origin, earlier: Origin) -> None:
+        """Of arcs from one place whose variables CPN Tools cannot bring together."""
+        says = {
+            "": f"CPN Tools takes variables of transition `{parts.name}` for others",
+            "tables": f"CPN Tools cannot check transition `{parts.name}`",
+        }.get(kind, f"CPN Tools refuses transition `{parts.name}`")
+        self.d.warning(
+            ARCS_SHARE,
+            f"{says}: this arc shares variables with other arcs in a way that it loses count of, because another arc "
+            "comes from the same place",
+            later,
+            notes=[Note("the other arc is here", earlier)],
+            hint="give this arc variables of its own, and say in the guard that they are equal to the others",
         )
-        missing = stuck(list(arcs.values()), equations, frozenset(free) - wanted, wanted)
-        if not missing:
-            return True
+
+    def refuse(self, parts: Parts, answer: Answer, arcs: Sequence[TakingArc], free: Uses) -> None:
+        """Say why CPN Tools finds no order in which it could give the variables values."""
+        missing = answer.names & frozenset(free) or frozenset(free)
         names = ", ".join(f"`{s.name}`" for s in sorted(missing, key=lambda s: s.name))
-        for n, summands in arcs.items():
-            inscription = parts.arcs[n][1]
-            if inscription is not None and len(summands) > 1 and any(s & missing for s in summands):
+        for arc in arcs:
+            summands = [frozenset(pattern_variables(t.pattern)) for t in arc.inscription.terms]
+            shared = any(a & b for a, b in combinations(summands, 2))
+            if shared and any(s & missing for s in summands):
                 self.d.error(
                     SUMMANDS_SHARE,
                     f"the summands of an arc of transition `{parts.name}` share variables, so that CPN Tools cannot "
                     f"bind {names}: it finds no complete binding sequence",
-                    inscription.origin,
+                    arc.inscription.origin,
                     notes=[Note(HERE, parts.origin)],
                     hint="of summands that share a variable one must have all the variables of the others; or give the "
                     "shared variable its value elsewhere, on another arc or by a guard",
                 )
-                return False
+                return
         first = min(missing, key=lambda s: s.name)
         self.d.error(
             BINDING_CIRCLE,
@@ -195,20 +264,6 @@ class Planner:
             notes=[Note(HERE, parts.origin)],
             hint=f"put `{first.name}` on an input arc as a pattern of its own, or write a guard `{first.name} = ...` "
             "whose other side has a value",
-        )
-        return False
-
-    def counted(self, parts: Parts) -> Names:
-        """Variables of patterns whose own coefficient has them: (size x)`x can only test."""
-        terms = [
-            t for _, inscription in parts.arcs for t in (inscription.terms if inscription else ())
-        ]
-        return frozenset(
-            s
-            for t in terms
-            if (own := self.variables.seen(t.coefficient))
-            for s in pattern_variables(self.terms.pattern(t.value))
-            if s in own
         )
 
     def steps(self, parts: Parts, needed: Uses, free: Uses) -> tuple[BindStep, ...] | None:

@@ -34,7 +34,6 @@ from pn2code.net.codes import (
     ARC_AS,
     ARC_EMPTY,
     ARC_IGNORED,
-    ARCS_SHARE,
     DECLARATION_EMPTY,
     DECLARATION_INSIDE,
     DECLARATION_UNREAD,
@@ -43,7 +42,7 @@ from pn2code.net.codes import (
     UNSUPPORTED_CHANNEL,
     UNSUPPORTED_DECLARATION,
 )
-from pn2code.net.engine_groups import clashes
+from pn2code.net.engine_binding import PlaceNode
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
 from pn2code.net.linked import Arc, Net, Page, Place, Transition
 from pn2code.net.terms import TermReader
@@ -131,9 +130,7 @@ class _Checker:
         self.program = self.elaborator.program()
         self.variables = NetVariables(self.program.variables)
         self.terms = TermReader(self.program, self.variables, d)
-        self.planner = Planner(
-            self.variables, self.terms, frozenset(declared), d, is_pnml=self.is_pnml
-        )
+        self.planner = Planner(self.variables, self.terms, frozenset(declared), d)
 
     def declare_all(self, declarations: Sequence[RawDeclaration]) -> None:
         """In order. Of two declarations of one id CPN Tools forgets the first when it comes to the second."""
@@ -404,13 +401,14 @@ class _Checker:
             delay=delay,
             code=code,
             code_span=t.code.text.span() if t.code else None,
+            written=len(written),
+            places=None if self.is_pnml else [self.node(a, colsets) for a in arcs],
         )
         self.warn_of_declarations(t)
         planned = self.planner.plan(parts)
         if planned is None:
             return None
         variables, plan = planned
-        self.warn_of_groups(t.name, arcs, colsets)
         if not self.is_pnml:
             engine_guards.warn(written, self.terms, self.variables, t.name, self.d)
         return TypedTransition(
@@ -426,6 +424,12 @@ class _Checker:
             origin=t.origin,
         )
 
+    @staticmethod
+    def node(arc: TypedArc, colsets: Mapping[str, Colset | None]) -> PlaceNode:
+        """The place of an arc."""
+        colset = colsets[arc.place]
+        return PlaceNode(arc.place, colset is not None and colset.timed)
+
     def warn_of_declarations(self, t: Transition) -> None:
         """Warn of inscriptions that keep CPN Tools from checking the page."""
         inscriptions = [t.guard, t.priority, *(a.inscription for a in t.arcs)]
@@ -438,25 +442,6 @@ class _Checker:
                     text.span(),
                     hint="declare it in the net, or write it with `val`",
                 )
-
-    def warn_of_groups(
-        self, name: str, arcs: list[TypedArc], colsets: Mapping[str, Colset | None]
-    ) -> None:
-        """Of arcs whose variables CPN Tools cannot bring together."""
-        used = ((a.place, colsets[a.place]) for a in arcs)
-        products = frozenset(
-            p for p, c in used if c is not None and c.resolved.kind is Kind.PRODUCT
-        )
-        for earlier, later, shared in clashes(arcs, products, self.planner.variables):
-            self.d.warning(
-                ARCS_SHARE,
-                f"CPN Tools refuses transition `{name}`: two of its arcs come from one place and share "
-                f"`{shared.name}`, but not the first variable of the earlier one",
-                _written(later),
-                notes=[Note("the earlier arc is here", _written(earlier))],
-                hint=f"give this arc a variable of its own instead of `{shared.name}`, and say in the guard "
-                "that both are equal",
-            )
 
     def arc(self, arc: Arc, place: Place, colset: Colset) -> TypedArc | None:
         if arc.kind in (ArcKind.INHIBITOR, ArcKind.RESET):

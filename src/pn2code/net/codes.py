@@ -240,10 +240,20 @@ BINDING_CIRCLE = register(
 ARCS_SHARE = register(
     "arcs-share-variables",
     "CPN Tools cannot bring together the variables of two arcs from one place",
-    "Its engine keeps the variables of the arcs from a place in groups. An arc that shares variables with an earlier "
-    "one in the file joins its group only if the first variable of the earlier one is among them. For (a, b) and "
-    "(c, b) it says `InternalError: insert_transvar`, whatever else binds the variables. pn2code accepts such a "
-    "net: the shared variable has one value.",
+    "Its engine keeps variables that arcs and conditions connect in groups, and an arc from a place that has another "
+    "arc belongs to the group of that one. It takes the arcs in the order of the file, the last one first, those in "
+    "both directions in the end. If an arc begins with a new variable and has one that is known, it says "
+    "`InternalError: insert_transvar`, whatever else binds them: at (n, r) and (m, r). If the group has become part of "
+    "another one in between, it says `InternalError: ins_compressed`; if the variables are of another group, it takes "
+    "them for others, and accepts the transition or not. pn2code accepts such a net: a shared variable has one value.",
+)
+ENGINE_CODE = register(
+    "engine-code",
+    "CPN Tools cannot compile the code that it makes of an arc",
+    "It writes the arcs from one place as one sum, and the value of each behind its coefficient without the "
+    "parentheses: of `h :: t` and `l` it makes 1`h::t ++ 1`l. With `if` it may be compiled, and then means something "
+    "else. From a place with a clock it does so with a single arc, too, if the coefficient is not 1: 2`(n + 1). It "
+    "accepts the net, and says so only when it is to be simulated. pn2code takes what is written.",
 )
 INITIAL_EFFECT = register(
     "initial-marking-effect",

@@ -19,10 +19,7 @@ def warn(
     guards: Sequence[Exp], terms: TermReader, variables: NetVariables, name: str, d: Diagnostics
 ) -> None:
     """Warn of equations in the guard of transition `name` that keep CPN Tools from checking it."""
-    for guard in guards:
-        found = _repeated(guard, terms, variables)
-        if found is None:
-            continue
+    for found in filter(None, (_repeated(guard, terms, variables) for guard in guards)):
         symbol, span = found
         d.warning(
             GUARD_REPEATS,
@@ -32,6 +29,13 @@ def warn(
             label="once more",
             hint="write `andalso true` behind the equation: then CPN Tools only tests it",
         )
+
+
+def repeated(
+    guards: Sequence[Exp], terms: TermReader, variables: NetVariables
+) -> tuple[Symbol, Span] | None:
+    """The first variable that is twice on a side of such an equation, and its second place."""
+    return next(filter(None, (_repeated(guard, terms, variables) for guard in guards)), None)
 
 
 def _repeated(guard: Exp, terms: TermReader, variables: NetVariables) -> tuple[Symbol, Span] | None:

@@ -152,17 +152,14 @@ def _declared(declaration: Dec) -> tuple[Symbol, ...]:
             return ()
 
 
-def pattern_variables(pattern: Pat | None) -> tuple[Symbol, ...]:
-    """Variables of a pattern, left to right, repeated ones once."""
-    found: dict[Symbol, None] = {}
-    stack: list[Pat] = [] if pattern is None else [pattern]
+def walk_pattern(pattern: Pat) -> Iterator[Pat]:
+    """The pattern and all inside it, left to right."""
+    stack = [pattern]
     while stack:
         p = stack.pop()
+        yield p
         match p:
-            case PVar(symbol):
-                found.setdefault(symbol)
-            case PAs(symbol, inner):
-                found.setdefault(symbol)
+            case PAs(_, inner):
                 stack.append(inner)
             case PRecord(fields):
                 stack.extend(x for _, x in reversed(fields))
@@ -170,7 +167,12 @@ def pattern_variables(pattern: Pat | None) -> tuple[Symbol, ...]:
                 stack.append(argument)
             case _:
                 pass
-    return tuple(found)
+
+
+def pattern_variables(pattern: Pat | None) -> tuple[Symbol, ...]:
+    """Variables of a pattern, left to right, repeated ones once."""
+    parts = () if pattern is None else walk_pattern(pattern)
+    return tuple(dict.fromkeys(p.symbol for p in parts if isinstance(p, PVar | PAs)))
 
 
 def merge(parts: Iterable[Uses]) -> Uses:

@@ -267,12 +267,8 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 """
 
 UTILITIES = frozenset(
-    {
-        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "GetOpt",
-        "IOUtil", "IntHashTable", "PathUtil", "PrimeSizes", "PropList", "Rand",
-        "RealOrderStats", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
-    }
-)  # fmt: skip
+    {"Base64", "GetOpt", "IOUtil", "PathUtil", "RealOrderStats", "SplayTree", "UnivariateStats"}
+)
 """Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
 
 STRUCTURES: frozenset[str] = frozenset(
