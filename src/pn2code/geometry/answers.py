@@ -99,6 +99,7 @@ class Pair:
         joints: where the arms are then, by robot, rad.
         run: in which they are under way.
         is_held: whether one of them is a clamp that holds what the other one takes along: no free zone would help.
+        do: what the user can do; "": see the proposals.
     """
 
     robots: tuple[str, str]
@@ -113,6 +114,7 @@ class Pair:
     picture: str = ""
     least: float | None = None
     is_held: bool = False
+    do: str = ""
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -215,6 +217,35 @@ class Proposal:
 
 
 @frozen
+class Open:
+    """Where it is that not all is known.
+
+    Args:
+        owners: whose programs; transitions: what is under way then.
+        why: in general; says: what of it is known; do: what can be done.
+        run: in which these are under way.
+    """
+
+    owners: tuple[str, ...]
+    transitions: tuple[str, ...]
+    why: str
+    says: str
+    do: str
+    run: Run | None = None
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "owners": list(self.owners),
+            "transitions": list(self.transitions),
+            "why": self.why,
+            "says": self.says,
+            "do": self.do,
+            "run": run_row(self.run),
+        }
+
+
+@frozen
 class Layout:
     """What is known of a layout.
 
@@ -225,6 +256,7 @@ class Layout:
         nearest: the pair of arms that comes nearest, if all keep apart.
         stopped: whether runs stop at a move that is impossible, so that nobody looked at what would come after it.
         devices: those of which something moves.
+        open_at: where it is that not all situations are known.
         is_wider: the states are those of a net that does more than the cell.
     """
 
@@ -242,6 +274,7 @@ class Layout:
     stopped: bool = False
     devices: tuple[str, ...] = ()
     is_wider: bool = False
+    open_at: tuple[Open, ...] = ()
 
     @property
     def of_moves(self) -> Verdict:
@@ -275,6 +308,7 @@ class Layout:
             "moves_answer": self.of_moves,
             "pairs_answer": self.of_pairs,
             "open": self.open or None,
+            "open_at": [x.row() for x in self.open_at],
             "pairs_open": self.pairs_open or None,
             "states": self.states,
             "wider": self.is_wider,

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Layout, Move, Pair, Proposal, Verdict
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
@@ -24,7 +24,7 @@ from pn2code.geometry.part_names import as_seen
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.situations import Met, Side, Situations
+from pn2code.geometry.situations import APART, Met, Side, Situations
 from pn2code.geometry.where import stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
@@ -134,7 +134,7 @@ class Look:
         moves = self._moves(found)
         self.options.stage("sweeping pairs ...")
         arms = self._pairs(found)
-        return Seen(tuple(moves), arms, tuple(self._parts(found)))
+        return Seen(tuple(moves), arms, (*self._parts(found), *self._turning(found)))
 
     def layout_of(
         self,
@@ -160,7 +160,36 @@ class Look:
             self.comparison.nearest() if is_apart else None,
             found.stopped,
             tuple(r.name for r in self.cell.devices),
+            open_at=tuple(self._open_at(found)),
         )
+
+    def _open_at(self, found: Situations) -> Iterator[Open]:
+        """Where it is that not all is known, but for what is wrong there."""
+        for doubt in found.doubts.values():
+            if not doubt.is_sure:
+                who = [_who(found, e) for e in doubt.met.elements]
+                yield Open(
+                    tuple(owner for _, owner in who),
+                    tuple(t for t, _ in who),
+                    reason(doubt.why),
+                    doubt.says,
+                    doubt.do,
+                    self._run(found, doubt.met),
+                )
+
+    def _turning(self, found: Situations) -> Iterator[Pair]:
+        """Parts that are handled on plates which move."""
+        for doubt in found.doubts.values():
+            if doubt.is_sure:
+                (t, owner), (u, other) = (_who(found, e) for e in doubt.met.elements)
+                does = tuple(
+                    "; ".join(dict.fromkeys(map(words, found.graph.commands(e))))
+                    for e in doubt.met.elements
+                )
+                run = self._run(found, doubt.met)
+                yield Pair(
+                    (owner, other), (t, u), (does[0], does[1]), "no", doubt.says, run=run, do=APART
+                )
 
     # --- moves -----------------------------------------------------------------------------------
 

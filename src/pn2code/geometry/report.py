@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from pn2code.geometry.answers import Layout, Move, Pair, Proposal
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal
 from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
 from pn2code.geometry.sweeps import RESOLUTION
@@ -37,9 +37,22 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
             yield from _bad_move(move, layout.devices)
     for pair in layout.pairs:
         yield from _bad_pair(pair)
+    for at in layout.open_at:
+        yield from _open_at(at)
     for proposal in layout.proposals:
         yield from _proposed(proposal)
     yield ""
+
+
+def _open_at(x: Open) -> Iterator[str]:
+    yield ""
+    names = " and ".join(f"`{t}`" for t in x.transitions)
+    whose = " and ".join(dict.fromkeys(x.owners))
+    at_once = "may be under way at once" if len(x.transitions) > 1 else "may be under way"
+    yield f"not known: {names} ({whose}) {at_once}"
+    yield f"  {x.says}"
+    yield f"  {x.do}"
+    yield from _run(x.run)
 
 
 def _whose(layout: Layout) -> str:
@@ -143,6 +156,8 @@ def _bad_pair(p: Pair) -> Iterator[str]:
     yield f"  {p.says}"
     if p.is_held:
         yield "  let the net command that the clamp opens, and wait for the answer, before the part is taken away"
+    if p.do:
+        yield f"  {p.do}"
     yield from _run(p.run)
     if p.picture:
         yield f"  picture: {p.picture}"
