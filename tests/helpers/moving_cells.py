@@ -9,6 +9,7 @@ on them, are from far too little to wide; some waits that matter are left out at
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from random import Random
 
 from helpers.cell_texts import ARM, GOING, head
@@ -144,7 +145,16 @@ def moving_cell(random: Random) -> tuple[str, str]:
     together = random.choice([0.1, 0.4, 0.7])
     for j, (party, _, _) in enumerate(tasks):
         edges |= {(i, j) for i in range(j) if tasks[i][0] != party and random.random() < together}
-    texts = _numbers(random)
+    return cell_of(tasks, edges, numbers_of(random))
+
+
+def cell_of(
+    tasks: Sequence[tuple[str, str, tuple[int, ...]]],
+    edges: Iterable[tuple[int, int]],
+    texts: Mapping[str, str],
+) -> tuple[str, str]:
+    """The net and the cell.toml; `texts`: what is put in for the words in capital letters."""
+    with_arm = any(party == "A" for party, _, _ in tasks)
     made = []
     for i, (party, does, _) in enumerate(tasks):
         for key in ("FIRST", "SECOND", "HIGH", "WIDE", "SPOT", "TOP"):
@@ -152,20 +162,17 @@ def moving_cell(random: Random) -> tuple[str, str]:
         made.append((party, told(i, does)))
     used = {p: name for p, name in _PARTIES.items() if any(p == own for own, _ in made)}
     names = [f"{c}{p}" for p in used for c in "fd"]
-    toml = (
-        head(*names, page="Top.", order="documented") + _MOVES + GOING + (ARM if with_arm else "")
-    )
-    toml += _DEVICES
-    for key in sorted(texts, key=len, reverse=True):
-        toml = toml.replace(f"= {key}", f"= {texts[key]}") if key != "STOP" else toml
+    toml = head(*names, page="Top.", order="documented") + _MOVES + GOING
+    toml += (ARM if with_arm else "") + _DEVICES
+    for key in sorted(texts.keys() - {"STOP"}, key=len, reverse=True):
+        toml = toml.replace(f"= {key}", f"= {texts[key]}")
     toml = toml.replace("\nSTOP\n", texts["STOP"])
     for p, name in _PARTIES.items():
         if p not in used:
             toml = _without(toml, name.lower())
             for verb in _VERBS.get(p, ()):
                 toml = re.sub(rf"(?m)^{verb} = .*\n", "", toml)
-    net = task_net(_HEAD, used, made, edges)
-    return net, toml
+    return task_net(_HEAD, used, made, edges), toml
 
 
 def _without(toml: str, device: str) -> str:
@@ -180,7 +187,7 @@ def _without(toml: str, device: str) -> str:
     return "[".join(out)
 
 
-def _numbers(random: Random) -> dict[str, str]:
+def numbers_of(random: Random) -> dict[str, str]:
     """Where everything is: the table behind the end of the belt, the lift beside both, the door between them."""
     stops = random.random() < 0.6
     long = random.uniform(1.05, 1.2)
@@ -195,7 +202,7 @@ def _numbers(random: Random) -> dict[str, str]:
     ly = ty + radius + 0.12 + far if beside else -0.9 + 0.1 + 0.12 + far
     lz = random.choice([0.3, 0.4, 0.5])
     run = 0.9 if stops else random.uniform(0.4, 0.8)
-    numbers = {
+    values = {
         "LONG": long, "TX": tx, "TY": ty, "TZ": tz, "TR": radius, "LX": lx, "LY": ly, "LZ": lz,
         "DX": random.choice([long - 1.0 + gap / 2.0, random.uniform(-0.5, 0.6), 1.5]),
         "DZ": random.choice([0.65, 0.82, 0.9]), "EX": random.uniform(-0.95, -0.8),
@@ -205,7 +212,7 @@ def _numbers(random: Random) -> dict[str, str]:
         "HIGH": random.uniform(50.0, 600.0), "WIDE": random.choice([200.0, 450.0, 700.0, 1100.0]),
         "TOP": 1000.0 * (tz + 0.151),
     }  # fmt: skip
-    texts = {key: f"{value:.4f}" for key, value in numbers.items()}
+    texts = {key: f"{value:.4f}" for key, value in values.items()}
     texts = {
         key: value.replace("-", "~") if key in ("FIRST", "SECOND") else value
         for key, value in texts.items()

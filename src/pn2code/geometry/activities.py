@@ -410,9 +410,13 @@ class Doing:
         for leg, contents in a.legs:
             if leg.path is None or contents is not a.legs[0][1]:
                 return False
-            if plate in turned_by(self._cell.robot(leg.robot), leg.path):
+            if self.is_moved(leg, plate):
                 return True
         return False
+
+    def is_moved(self, leg: Leg, plate: str) -> bool:
+        """Whether a leg moves a plate."""
+        return leg.path is not None and plate in turned_by(self._cell.robot(leg.robot), leg.path)
 
     def does(self, plate: str) -> str:
         """What a plate does when it moves, for messages."""

@@ -94,6 +94,7 @@ class Pair:
     Args:
         robots: whose they are; the second "" of a part that stands.
         doing: transitions and commands, in words.
+        things: of what rests, its name if that is not the arm or device but what stands on it.
         answer: "no" or "unknown"; says: why.
         where: what meets what, and where; distance: m, negative: an overlap; least: nowhere is it less (None: unknown).
         joints: where the arms are then, by robot, rad.
@@ -115,6 +116,7 @@ class Pair:
     least: float | None = None
     is_held: bool = False
     do: str = ""
+    things: tuple[str, str] = ("", "")
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -122,6 +124,7 @@ class Pair:
             "robots": [r for r in self.robots if r],
             "transitions": list(self.transitions),
             "doing": list(self.doing),
+            "things": [x or None for x in self.things],
             "answer": self.answer,
             "says": self.says,
             "links": [self.where.a, self.where.b] if self.where else None,
@@ -136,15 +139,18 @@ class Pair:
 
 @frozen
 class Rest:
-    """An arm or device that rests in a zone.
+    """An arm or device that rests in a zone, or a part on a turntable, lift or belt of one.
 
     Args:
-        at: where (the TCP pose, of a device where its axes are); from_start: already when a run begins.
+        at: where (the TCP pose, of a device where its axes are, of a part its place); from_start: already when a run
+            begins.
+        thing: the part, and on what; "": it is the arm or device.
     """
 
     robot: str
     at: str
     from_start: bool
+    thing: str = ""
 
 
 @frozen
@@ -209,7 +215,13 @@ class Proposal:
             "gives_when": [x or None for x in self.gives_when],
             "while_with": [x or None for x in self.while_with],
             "rests": [
-                {"robot": x.robot, "at": x.at, "from_start": x.from_start} for x in self.rests
+                {
+                    "robot": x.robot,
+                    "at": x.at,
+                    "from_start": x.from_start,
+                    "thing": x.thing or None,
+                }
+                for x in self.rests
             ],
             "works": self.works,
             "says": self.says,

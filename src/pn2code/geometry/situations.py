@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
@@ -23,13 +23,19 @@ from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.contents import Contents, spot
 from pn2code.geometry.graph import MOST_STATES, CellGraph
-from pn2code.geometry.legs import Stand
+from pn2code.geometry.legs import Leg, Stand
+from pn2code.geometry.part_names import like
 from pn2code.geometry.rooms import Moment
 from pn2code.geometry.seeing import Scene, Seeing
 from pn2code.robot.parts import Part
 
 Side = tuple[int, int, int]
-"""What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands)."""
+"""What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands).
+
+Of parts of a kind that stand on a plate of it, whatever the arm does, it is (arm, -2, which kind and plate).
+"""
+ON_PLATE = -2
+_NO_ARM = 1000
 Said = frozenset[tuple[int, str, bool]]
 """Whom, by the number of the owner, which sensor has told what."""
 MOST = 1_000_000
@@ -113,10 +119,14 @@ class Situations:
         """by (activity, leg of it, part that stands)"""
         self.states: dict[Side, set[int]] = {}
         """the states in which that is so"""
+        self.riders: list[Part] = []
+        """what stands on plates in some situation, the first of each kind on each plate"""
+        self._rider: dict[tuple[str, str], int] = {}
         self.why = graph.why
         self.doubts: dict[tuple[object, ...], Doubt] = {}
         self._near: dict[tuple[int, int], list[tuple[str, Moment]]] = {}
         names = {o.name: o.index for o in graph.partition.owners}
+        self._numbers_of = {r: i for i, r in enumerate(self.robots)}
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
         cell = doing.start.parts.cell
@@ -183,6 +193,33 @@ class Situations:
         if element < 0:
             return (arm, -1, leg.start.number)
         return (arm, self.graph.elements[element].transition, -1)
+
+    def resting(self, side: Side, name: str, leg: Leg, contents: Contents) -> Side:
+        """Of an arm what stands on a plate of it that stands, by a name of the collision library, whatever it does."""
+        found = like(name, contents)
+        if not found or self.doing.is_moved(leg, found[0].plate):
+            return side
+        return (side[0], ON_PLATE, self.number_of(found[0]))
+
+    def number_of(self, part: Part) -> int:
+        """Of the parts of its kind on its plate; -1: there are none."""
+        return self._rider.get((part.kind.name, part.plate), -1)
+
+    def at_once(self) -> Iterator[tuple[Side, Side]]:
+        """What two programs do at once of which not all is known."""
+        for doubt in self.doubts.values():
+            if len(doubt.met.elements) == 2:
+                one, other = (self._side_of(e) for e in doubt.met.elements)
+                if one[0] != other[0]:
+                    yield min(one, other), max(one, other)
+
+    def _side_of(self, element: int) -> Side:
+        e = self.graph.elements[element]
+        return (self._arm_of.get(e.owner, _NO_ARM + e.owner), e.transition, -1)
+
+    def name_of(self, arm: int) -> str:
+        """Of an arm or device, also of one of which nothing moves."""
+        return self.robots[arm] if arm < _NO_ARM else self._owner_names[arm - _NO_ARM]
 
     def _number(self, s: Situation, parent: int, element: int) -> int:
         if s.key not in self._numbers:
@@ -330,10 +367,12 @@ class Situations:
             arm = self._arm_of.get(doing.owner)
             if arm is not None:
                 busy.add(arm)
-                self.states.setdefault((arm, doing.transition, -1), set()).add(here.state)
+            own = _NO_ARM + doing.owner if arm is None else arm
+            self.states.setdefault((own, doing.transition, -1), set()).add(here.state)
         for arm, stand in enumerate(here.stands):
             if arm not in busy:
                 self.states.setdefault((arm, -1, stand.number), set()).add(here.state)
+        self._note_riders(here)
         key = (
             tuple(sorted((e, a.number) for e, a in under_way.items())),
             tuple(s.number for s in here.stands),
@@ -365,6 +404,16 @@ class Situations:
         if self._with_tables:
             self._expect_still(number, under_way)
             self._expect_none_between(number, under_way)
+
+    def _note_riders(self, here: Situation) -> None:
+        """What stands on plates, whatever their owners do."""
+        for part in here.contents.parts.present.values():
+            if part.plate and part.carrier in self._numbers_of:
+                known = self._rider.setdefault((part.kind.name, part.plate), len(self.riders))
+                if known == len(self.riders):
+                    self.riders.append(part)
+                side = (self._numbers_of[part.carrier], ON_PLATE, known)
+                self.states.setdefault(side, set()).add(here.state)
 
     def _note_parts(
         self,
@@ -447,10 +496,13 @@ class Situations:
     ) -> None:
         """Two come to something else in the other order."""
         (e, a), (f, b) = one, other
+        if a.fault or b.fault:  # which is told
+            self.why = self.why or "order"
+            return
         does = "; ".join(self._does_to_parts(x) for x in (one, other))
-        what = "is impossible after the other" if a.fault or b.fault else "comes to something else"
         says = (
-            f"one of {self._name(e)} and {self._name(f)} {what}, or when both are half way: {does}"
+            f"one of {self._name(e)} and {self._name(f)} is impossible, or comes to something else, after the other: "
+            f"{does}"
         )
         self._doubt("order", number, (e, f), says, APART)
 
@@ -520,6 +572,8 @@ class Situations:
         """One handles parts where a plate of another one moves."""
         (e, a), (f, _) = mover, other
         self.why = self.why or "turning"
+        if other[1].fault:  # which is told
+            return
         sure = [(p, m) for p, m in found if p in m.plates and self.doing.moves_first(a, p)]
         is_sure = bool(sure)
         plate, moment = (sure or found)[0]
