@@ -34,7 +34,8 @@ class Clearance:
         point: where, on `a`, in the world; other: the nearest point on `b`.
         stands: `a` stands on `b`, so the overlap is permitted on joint moves as well.
         second: between robots, the other one.
-        rides: the robots of which only a turntable, or what stands on it, is near.
+        rides: the robots of which only a turntable, or what stands on it, is near; plates: of each which one, of a
+            device the axis on which it stands.
     """
 
     kind: ClearanceKind
@@ -48,6 +49,7 @@ class Clearance:
     stands: bool = False
     second: str = ""
     rides: tuple[str, ...] = ()
+    plates: tuple[str, ...] = ()
 
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""
