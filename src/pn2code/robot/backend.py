@@ -56,6 +56,10 @@ class Clearance:
         return self.allowed if self.stands or not is_free else None
 
 
+BEFORE = 0.12
+"""m: what is no further before a place belongs to what is looked at there."""
+
+
 @frozen
 class Camera:
     """Where a picture is taken from.
@@ -118,6 +122,11 @@ class Backend(Protocol):
 
     def light_zone(self, name: str) -> None:
         """Something was too fast in a zone: pictures show it so from now on."""
+
+    def hidden(
+        self, eye: tuple[float, float, float], points: Sequence[tuple[float, float, float]]
+    ) -> int:
+        """How many of some places something else hides from an eye: what is further before them than `BEFORE`."""
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255; None: this backend has no eyes."""

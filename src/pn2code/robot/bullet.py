@@ -25,6 +25,7 @@ from lxml import etree
 from pn2code.base.frozen import frozen, record
 from pn2code.robot import collision_meshes, urdf
 from pn2code.robot.backend import (
+    BEFORE,
     BackendName,
     Beside,
     Camera,
@@ -739,6 +740,20 @@ class BulletBackend:
                 self._p.removeBody(self._zones[name], physicsClientId=self._client)
                 broken = zone_body(self._cell.zones[name], is_broken=True)
                 self._zones[name] = self._load_body(broken, True).id
+
+    def hidden(
+        self, eye: tuple[float, float, float], points: Sequence[tuple[float, float, float]]
+    ) -> int:
+        """How many of some places something else hides from an eye: what is further before them than `BEFORE`."""
+        self._p.performCollisionDetection(physicsClientId=self._client)
+        found = self._p.rayTestBatch(
+            [eye] * len(points), list(points), physicsClientId=self._client
+        )
+        far = [float(np.linalg.norm(np.subtract(p, eye))) for p in points]
+        return sum(
+            hit[0] >= 0 and (1.0 - hit[2]) * way > BEFORE
+            for hit, way in zip(found, far, strict=True)
+        )
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255."""
