@@ -11,7 +11,9 @@
                                      with a part, is never said to be right; in
                                      each fourth of them an arm is placed anew, and what is proved of its
                                      new place is run as well; --large: instead of that each is looked at as if it had
-                                     too many states, and the answers compared
+                                     too many states, and the answers compared;
+                                     --moving: cells of a belt, a turntable, a lift, a door, and an arm or an operator,
+                                     with little room between what they sweep, which need not wait for each other
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ from tools.geometry.wander import wander
 
 from helpers.changing_cells import changing_cell
 from helpers.machine_cells import machine_cell
+from helpers.moving_cells import moving_cell
 from helpers.netbuilder import cpn
 from helpers.sighted_cells import sighted_cell
 from helpers.two_arm_cells import two_arm_cell
@@ -222,12 +225,13 @@ def random_cells(
     is_run: bool,
     step: int = 1,
     large: bool = False,
+    moving: bool = False,
 ) -> int:
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
     wrong = 0
     for number in range(seed, seed + step * count, step):
-        net, toml = random_cell(number)
+        net, toml = moving_cell(Random(number)) if moving else random_cell(number)
         cell = folder / str(number)
         cell.mkdir()
         (cell / "cell.cpn").write_bytes(cpn(net))
@@ -253,7 +257,7 @@ def random_cells(
                     f"cell {number}: {found.answer}, {as_large.answer} as a large cell; {met}",
                     flush=True,
                 )
-        elif number % 4 == 0:
+        elif number % 4 == 0 and not moving:
             robot = arms.robots[-1].name
             answer, met = placed(cell, robot, folder / f"{number}.place", number, walks)
             key = (f"{answer} to another place", "something" if met else "nothing")
@@ -279,6 +283,7 @@ def main() -> int:
     parser.add_argument(
         "--large", action="store_true", help="random cells also as if they had too many states"
     )
+    parser.add_argument("--moving", action="store_true", help="random cells of moving devices")
     parser.add_argument("--pictures", type=Path, metavar="DIR")
     options = parser.parse_args()
     if options.pairs:
@@ -293,6 +298,7 @@ def main() -> int:
                 is_run=options.runs,
                 step=options.step,
                 large=options.large,
+                moving=options.moving,
             )
         if options.pictures:
             return pictures(Path(name), options.pictures)

@@ -202,6 +202,7 @@ def _walk(
             look(),
             kinds={a.executor.robot.name: a.kind for a in arms.values() if a.kind is not None},
             calm=[a.executor.robot.name for a in arms.values() if not a.turning()],
+            turning=parts.parts.turning,
         )
         if found.fault is not None:
             return found.fault.message

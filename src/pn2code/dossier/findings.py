@@ -142,6 +142,10 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
                 f"{row['distances_measured']:,} distances{nearest}{part}",
             ),
         ]
+        found += [
+            Finding(f"{where}{' and '.join(x['transitions'])}", OPEN, f"{x['says']}; {x['do']}")
+            for x in row.get("open_at", ())
+        ]
     states = max(row["states"] for row in said["layouts"])
     return f"All that can be under way in the {states:,} states of the cell was swept.", found
 

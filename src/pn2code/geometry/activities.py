@@ -8,9 +8,10 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -19,6 +20,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.contents import Contents, parts_of, spot
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
+from pn2code.geometry.rooms import Moment, Room, near, surface, swept, whole
 from pn2code.geometry.shown import Shown
 from pn2code.robot.belts import line_of, told_to_run, until_stop
 from pn2code.robot.clamps import (
@@ -36,7 +38,6 @@ from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
-from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
@@ -59,7 +60,7 @@ class Activity:
         turns: the turntables that turn in it.
         may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
             is taken away, they do.
-        handled: where parts are handled in it (a place in the world, m), and how far around that (m).
+        moments: when parts are handled in it, come to rest, or begin to move with a plate.
         leans: the robots with parts in their tools on which clamps close in it: they must not move meanwhile.
         halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
@@ -75,7 +76,7 @@ class Activity:
     doubt: str = ""
     turns: frozenset[str] = frozenset()
     may_run: frozenset[str] = frozenset()
-    handled: tuple[tuple[Array, float], ...] = ()
+    moments: tuple[Moment, ...] = ()
     leans: frozenset[str] = frozenset()
     halfway: tuple[Contents, ...] = ()
 
@@ -170,7 +171,7 @@ class Doing:
         )
         turns: frozenset[str] = frozenset()
         may_run: frozenset[str] = frozenset()
-        handled: list[tuple[Array, float]] = []
+        moments: list[Moment] = []
         leans: frozenset[str] = frozenset()
         halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
@@ -201,6 +202,7 @@ class Doing:
                     if done.fault:
                         legs = legs or [(self.planner.standing(stand), contents)]
                         break
+                    moments += self._beginning(plates, standing, contents)
                 legs.append((leg, contents))
                 if leg.fault is not None:
                     done = replace(done, fault=leg.fault.message, command=None, doubt="")
@@ -208,6 +210,7 @@ class Doing:
                 stand = leg.end
                 ran = turned_by(own, leg.path, own.belts) if leg.path is not None else None
                 if ran:
+                    before = contents
                     try:
                         contents, doubt = self._run_out(leg, ran, standing, contents)
                     except PartFault as fault:
@@ -217,10 +220,10 @@ class Doing:
                         break
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
-                    handled += self._handed_on(ran, (*others, stand), contents)
+                    moments += self._handed_on(ran, (*others, stand), before, contents)
                 for held in closing(own, leg.start.q, leg.end.q):
                     kinds |= frozenset(self._cell.parts)
-                    handled.append(self._around_clamp(held))
+                    moments.append(self._around_clamp(held))
                     near = self._nearest(held, contents, (*others, stand))
                     wrong = on_nothing(held, near)
                     done = replace(done, kinds=kinds)
@@ -238,14 +241,12 @@ class Doing:
                 tcp = None
                 if stand is not None:
                     tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
-                place = self._around(command.handling, tcp)
-                handled += place
                 doing = _Handled(owner, command.handling, tcp, standing)
                 try:
-                    before, (contents, doubt) = contents, self._handle(doing, contents)
-                    for spot_ in place:
-                        handled += self._with_riders(owner, spot_, (before, contents))
+                    contents, doubt, moment = self._handle(doing, contents)
+                    moments += moment
                 except PartFault as fault:
+                    moments += self._around(owner, command.handling, tcp)
                     done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
                     break
                 if doubt and not done.doubt:
@@ -257,7 +258,7 @@ class Doing:
             after=contents,
             turns=turns,
             may_run=may_run,
-            handled=tuple(handled),
+            moments=tuple(moments),
             leans=leans,
             halfway=tuple(halfway),
         )
@@ -274,12 +275,29 @@ class Doing:
         ]
         return nearest(self._cell, held, there)
 
-    def _around_clamp(self, held: Held) -> tuple[Array, float]:
-        """Where a clamp closes on a part, and how far around that it reaches, whichever it is."""
+    def _around_clamp(self, held: Held) -> Moment:
+        """Where a clamp closes on a part, whichever it is."""
         ground = Ground.of(self._cell)
-        spot = matrix_of(self._cell.places[held.clamp.place])[:3, 3]
+        at = matrix_of(self._cell.places[held.clamp.place])[:3, 3]
         kinds = self._cell.parts.values()
-        return spot, max((ground.radius(k.name) + k.tolerance for k in kinds), default=0.0)
+        far = max((ground.radius(k.name) + k.tolerance for k in kinds), default=0.0)
+        return Moment((Room.around(at[None], far),), f"`{held.name}` closes on a part", _point(at))
+
+    def _beginning(
+        self, plates: frozenset[str], standing: tuple[Stand, ...], contents: Contents
+    ) -> Iterator[Moment]:
+        """Plates begin to move: what others take along must not stand on them then, nor theirs on others."""
+        parts = parts_of(contents, standing, 0.0)
+        ground = Ground.of(self._cell)
+        for plate in sorted(plates):
+            own = ground.plates[plate]
+            riders = parts.riders(plate)
+            rooms = [Room.around(ground.corners_of(p.kind.name, parts.world(p))) for p in riders]
+            frame = parts.plate_frame(plate)
+            tops = [*surface(own), *(Room.around(h.at(frame).corners) for h in own.hulls)]
+            says = f"`{plate}` begins to move"
+            at = _point(frame[:3, 3])
+            yield Moment(tuple(rooms), says, at, goes="", surfaces=tuple(tops))
 
     def _run_out(
         self, leg: Leg, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
@@ -301,66 +319,145 @@ class Doing:
         return self._one_of(found, faults, f"`{min(ran)}` takes parts along")
 
     def _handed_on(
-        self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
-    ) -> list[tuple[Array, float]]:
-        """Where belts have taken parts onto other belts or turntables, as if they had been put there."""
+        self,
+        ran: frozenset[str],
+        standing: tuple[Stand, ...],
+        before: Contents,
+        contents: Contents,
+    ) -> Iterator[Moment]:
+        """Where belts have taken parts, as if they had been put there; on those of their line they stand as before."""
         parts = parts_of(contents, standing, 0.0)
-        ground = Ground.of(self._cell)
-        out = []
+        moved = {p.name for p in before.parts.present.values() if p.plate in ran}
         for part in parts.present.values():
-            if part.plate and parts.plates_under(part) - ran:
-                out.append((parts.world(part)[:3, 3], ground.radius(part.kind.name)))
-        return out
+            if part.name in moved and not part.holder:
+                frame = parts.world(part)
+                on = frozenset(parts.plates_under(part) - ran)
+                says = f"`{min(ran)}` takes `{part.name}` along"
+                room = Room.around(Ground.of(self._cell).corners_of(part.kind.name, frame))
+                yield Moment((room,), says, _point(frame[:3, 3]), on, "onto")
 
-    def _around(self, handling: Handling, tcp: Array | None) -> list[tuple[Array, float]]:
-        """Where a part is handled, and how far around that it reaches, whichever it is and however it lies.
+    def _room(self, kind: str, frame: Array) -> Room:
+        """Around a part, and its frame, and as far as it can be off from where it is looked for."""
+        return Room.around(Ground.of(self._cell).corners_of(kind, frame), self._tolerance)
+
+    @cached_property
+    def _tolerance(self) -> float:
+        return max((k.tolerance for k in self._cell.parts.values()), default=0.0)
+
+    def _around(self, owner: str, handling: Handling, tcp: Array | None) -> Iterator[Moment]:
+        """Where a part cannot be handled: around that, whichever it is and however it lies.
 
         Tools stand on no turntable.
         """
-        if handling.effect in CHANGES:
-            return []
-        frame = matrix_of(self._cell.places[handling.place]) if handling.place else tcp
-        assert frame is not None, "only a tool handles parts where it is"
-        kind = self._cell.parts[handling.part]
-        return [(frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance)]
+        if handling.effect not in CHANGES:
+            frame = matrix_of(self._cell.places[handling.place]) if handling.place else tcp
+            assert frame is not None, "only a tool handles parts where it is"
+            kind = self._cell.parts[handling.part]
+            far = 2.0 * Ground.of(self._cell).radius(kind.name) + self._tolerance
+            says = f"`{owner}` {handling.effect} a part `{kind.name}`"
+            at = frame[:3, 3]
+            yield Moment((Room.around(at[None], far),), says, _point(at))
 
-    def _with_riders(
-        self, owner: str, place: tuple[Array, float], some: Iterable[Contents]
-    ) -> Iterator[tuple[Array, float]]:
-        """The same of what stands on the part that is handled, each on the one before."""
-        riders = [p for c in some for p in riding(c.parts.present.values(), owner)]
-        radii = {p.name: Ground.of(self._cell).radius(p.kind.name) for p in riders}
-        if radii:
-            yield place[0], place[1] + 2.0 * sum(radii.values())
+    def _where(self, doing: _Handled, change: PartChange, before: Parts, after: Parts) -> Moment:
+        """Where a part is handled, with what stands on it then."""
+        handling, frame = doing.handling, matrix_of(change.pose)
+        rooms = [self._room(handling.part, frame)]
+        if doing.tcp is not None:
+            rooms.append(Room.around(doing.tcp[None, :3, 3], self._tolerance))
+            tool = after.tool_of(doing.owner)
+            if tool:
+                tip = self._cell.robot(doing.owner).of_tool(tool, doing.tcp)
+                rooms.append(Room.around(tip[None, :3, 3], self._tolerance))
+        for other in after.settled:
+            kind = (after.present.get(other.part) or before.present[other.part]).kind
+            rooms.append(self._room(kind.name, matrix_of(other.pose)))
+        if handling.effect in ("takes", "removes"):
+            plates, goes = {before.present[change.part].plate} - {""}, "from"
+        else:
+            plates, goes = after.plates_under(after.present[change.part]), "on"
+        says = f"`{doing.owner}` {handling.effect} `{change.part}`"
+        return Moment(tuple(rooms), says, _point(frame[:3, 3]), frozenset(plates), goes)
 
     def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
-        """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
+        """Whether a place is so near to a turntable that it, or what stands on it, can come there when it moves."""
+        point, far = where
+        own = Ground.of(self._cell).plates[plate]
+        some = {spot(p): p for c in contents for p in c.parts.present.values()}
+        rooms = [*swept(own, (), whole(own)), *surface(own), *self._anywhere(plate, some.values())]
+        return near([Room.around(point[None], far)], rooms)
+
+    def _anywhere(self, plate: str, some: Iterable[Part]) -> list[Room]:
+        """Where a plate, as far as it can move, takes what stands on it, or on the belts of its line."""
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
-        axis = own.axis
-        own_plates = line_of(own.robot, axis)
-        riders = [
-            p for inside in contents for p in inside.parts.present.values() if p.plate in own_plates
-        ]
-        point, around = where
-        off = inverse(own.T_world_axis) @ np.append(point, 1.0)
-        if axis.belt is not None:
-            # What stands on it is above it, before and after.
-            beside = (
-                max(-off[0], off[0] - axis.upper, 0.0),
-                max(abs(off[1]) - axis.belt.width / 2.0, 0.0),
-            )
-            wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
-            return float(np.hypot(*beside)) <= wide + around
-        if axis.is_track:
-            # Wherever it is on its way.
-            along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
-            apart = float(np.linalg.norm(off[:3] - along * axis.direction))
-            far = [np.linalg.norm(p.frame[:3, 3]) + ground.radius(p.kind.name) for p in riders]
-        else:
-            apart = float(np.hypot(*off[:2]))
-            far = [np.hypot(*p.frame[:2, 3]) + ground.radius(p.kind.name) for p in riders]
-        return apart <= max([own.reach, *map(float, far)]) + around
+        line = line_of(own.robot, own.axis)
+        riders = []
+        for part in some:
+            if part.plate in line:
+                to = inverse(own.T_world_axis) @ ground.plates[part.plate].T_world_axis
+                riders.append(ground.corners_of(part.kind.name, to @ part.frame))
+        if own.axis.belt is None or not riders:
+            return swept(own, riders, whole(own))[-len(riders) :] if riders else []
+        # Wherever on it, also from the beginning of a belt before it, and a little beyond its end.
+        rows = np.vstack(riders)
+        beyond = own.axis.upper + float(max(np.ptp(r[:, 0]) for r in riders))
+        ends = [(min(0.0, float(rows[:, 0].min())), beyond)]
+        ends += [(float(rows[:, i].min()), float(rows[:, i].max())) for i in (1, 2)]
+        return swept(own, [np.array(list(itertools.product(*ends)))], (0.0, 0.0))
+
+    def moves_first(self, a: Activity, plate: str) -> bool:
+        """Whether an activity moves a plate before it does anything to parts."""
+        for leg, contents in a.legs:
+            if leg.path is None or contents is not a.legs[0][1]:
+                return False
+            if self.is_moved(leg, plate):
+                return True
+        return False
+
+    def is_moved(self, leg: Leg, plate: str) -> bool:
+        """Whether a leg moves a plate."""
+        return leg.path is not None and plate in turned_by(self._cell.robot(leg.robot), leg.path)
+
+    def does(self, plate: str) -> str:
+        """What a plate does when it moves, for messages."""
+        return Ground.of(self._cell).plates[plate].does
+
+    def moments_near(self, a: Activity, b: Activity) -> list[tuple[str, Moment]]:
+        """What of one activity may depend on how far plates are that another one moves: the plate, and what."""
+        out = []
+        ground = Ground.of(self._cell)
+        for plate in sorted(a.turns | a.may_run) if b.moments else ():
+            own = ground.plates[plate]
+            index = own.robot.index(own.axis.name)
+            # Each with the plate on its way, in the end where it stays, ...
+            ways = [(c, _way(leg, index)) for leg, c in a.legs if leg.robot == own.robot.name]
+            is_moved = any(way[0] != way[1] for _, way in ways)
+            if is_moved and a.end is not None:
+                last = float(a.end.q[index])
+                ways.append((a.after, (last, last)))
+            known: dict[str, Part] = {}
+            riders: list[Room] = []
+            plates: list[Room] = []
+            for contents, way in ways:
+                on = contents.parts.riders(plate)
+                shapes = [ground.corners_of(p.kind.name, p.frame) for p in on]
+                rooms = swept(own, shapes, way)
+                plates += rooms[: len(rooms) - len(on)]
+                riders += rooms[len(rooms) - len(on) :]
+                known |= {spot(p): p for p in on}
+            # ... and what others put there meanwhile, or what waits, anywhere.
+            more = (*a.between, *b.between)
+            some = {spot(p): p for c in more for p in c.parts.present.values()}
+            if is_moved:
+                some = {key: p for key, p in some.items() if key not in known and p.plate == plate}
+            else:
+                plates += swept(own, (), whole(own))
+            riders += self._anywhere(plate, some.values())
+            for moment in b.moments:
+                rooms = [*riders, *plates, *(surface(own) if moment.goes else ())]
+                if near(moment.rooms, rooms) or near(moment.surfaces, riders):
+                    out.append((plate, moment))
+        return out
 
     def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
         """That a device takes a part along which a clamp of its own holds then; "": it does not."""
@@ -392,8 +489,10 @@ class Doing:
                 done = replace(done, doubt=_nearly(max(map(str, faults))), command=command)
         return done
 
-    def _handle(self, doing: _Handled, contents: Contents) -> tuple[Contents, str]:
-        """What an action does to a part, and why it is not known that it can ("": it can).
+    def _handle(
+        self, doing: _Handled, contents: Contents
+    ) -> tuple[Contents, str, tuple[Moment, ...]]:
+        """What an action does to a part, why it is not known that it can ("": it can), and where; tools are nowhere.
 
         Raises PartFault if it cannot.
         """
@@ -406,7 +505,10 @@ class Doing:
         does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
         doubt = self._expect_unclamped(doing, change) or doubt
-        return after, self._expect_apart(doing, change, parts) or doubt
+        where: tuple[Moment, ...] = ()
+        if doing.handling.effect not in CHANGES:
+            where = (self._where(doing, change, contents.parts, parts),)
+        return after, self._expect_apart(doing, change, parts) or doubt, where
 
     def _expect_unclamped(self, doing: _Handled, change: PartChange) -> str:
         """Whether a part that leaves the cell is in no clamp that holds it.
@@ -492,6 +594,19 @@ def _tried(
     if not found:
         raise faults[0]
     return found, faults
+
+
+def _point(at: Array) -> tuple[float, float, float]:
+    x, y, z = map(float, at)
+    return x, y, z
+
+
+def _way(leg: Leg, axis: int) -> tuple[float, float]:
+    """From where to where an axis goes."""
+    path = leg.path
+    if path is None:
+        return float(leg.start.q[axis]), float(leg.start.q[axis])
+    return float(path.q(0.0)[axis]), float(path.q(path.duration)[axis])
 
 
 def _nearly(what: str) -> str:

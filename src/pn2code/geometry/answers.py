@@ -94,11 +94,13 @@ class Pair:
     Args:
         robots: whose they are; the second "" of a part that stands.
         doing: transitions and commands, in words.
+        things: of what rests, its name if that is not the arm or device but what stands on it.
         answer: "no" or "unknown"; says: why.
         where: what meets what, and where; distance: m, negative: an overlap; least: nowhere is it less (None: unknown).
         joints: where the arms are then, by robot, rad.
         run: in which they are under way.
         is_held: whether one of them is a clamp that holds what the other one takes along: no free zone would help.
+        do: what the user can do; "": see the proposals.
     """
 
     robots: tuple[str, str]
@@ -113,6 +115,8 @@ class Pair:
     picture: str = ""
     least: float | None = None
     is_held: bool = False
+    do: str = ""
+    things: tuple[str, str] = ("", "")
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -120,6 +124,7 @@ class Pair:
             "robots": [r for r in self.robots if r],
             "transitions": list(self.transitions),
             "doing": list(self.doing),
+            "things": [x or None for x in self.things],
             "answer": self.answer,
             "says": self.says,
             "links": [self.where.a, self.where.b] if self.where else None,
@@ -134,15 +139,18 @@ class Pair:
 
 @frozen
 class Rest:
-    """An arm or device that rests in a zone.
+    """An arm or device that rests in a zone, or a part on a turntable, lift or belt of one.
 
     Args:
-        at: where (the TCP pose, of a device where its axes are); from_start: already when a run begins.
+        at: where (the TCP pose, of a device where its axes are, of a part its place); from_start: already when a run
+            begins.
+        thing: the part, and on what; "": it is the arm or device.
     """
 
     robot: str
     at: str
     from_start: bool
+    thing: str = ""
 
 
 @frozen
@@ -207,10 +215,45 @@ class Proposal:
             "gives_when": [x or None for x in self.gives_when],
             "while_with": [x or None for x in self.while_with],
             "rests": [
-                {"robot": x.robot, "at": x.at, "from_start": x.from_start} for x in self.rests
+                {
+                    "robot": x.robot,
+                    "at": x.at,
+                    "from_start": x.from_start,
+                    "thing": x.thing or None,
+                }
+                for x in self.rests
             ],
             "works": self.works,
             "says": self.says,
+        }
+
+
+@frozen
+class Open:
+    """Where it is that not all is known.
+
+    Args:
+        owners: whose programs; transitions: what is under way then.
+        why: in general; says: what of it is known; do: what can be done.
+        run: in which these are under way.
+    """
+
+    owners: tuple[str, ...]
+    transitions: tuple[str, ...]
+    why: str
+    says: str
+    do: str
+    run: Run | None = None
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "owners": list(self.owners),
+            "transitions": list(self.transitions),
+            "why": self.why,
+            "says": self.says,
+            "do": self.do,
+            "run": run_row(self.run),
         }
 
 
@@ -225,6 +268,7 @@ class Layout:
         nearest: the pair of arms that comes nearest, if all keep apart.
         stopped: whether runs stop at a move that is impossible, so that nobody looked at what would come after it.
         devices: those of which something moves.
+        open_at: where it is that not all situations are known.
         is_wider: the states are those of a net that does more than the cell.
     """
 
@@ -242,6 +286,7 @@ class Layout:
     stopped: bool = False
     devices: tuple[str, ...] = ()
     is_wider: bool = False
+    open_at: tuple[Open, ...] = ()
 
     @property
     def of_moves(self) -> Verdict:
@@ -275,6 +320,7 @@ class Layout:
             "moves_answer": self.of_moves,
             "pairs_answer": self.of_pairs,
             "open": self.open or None,
+            "open_at": [x.row() for x in self.open_at],
             "pairs_open": self.pairs_open or None,
             "states": self.states,
             "wider": self.is_wider,

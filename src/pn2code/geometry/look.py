@@ -8,32 +8,34 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Layout, Move, Pair, Proposal, Verdict
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.part_names import as_seen
+from pn2code.geometry.part_names import as_in_runs, as_seen, gap_as_seen, like, shown
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.situations import Met, Side, Situations
-from pn2code.geometry.where import stands_at
+from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
+from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
-from pn2code.geometry.zones import Explore, Zones
+from pn2code.geometry.zones import Explore, Zones, sides_of
+from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
 from pn2code.robot.motion import other_branches
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 
+_NOWHERE = Clearance("robots", "", "", "", 0.0, None, (0.0, 0.0, 0.0))
 MOST_RUNS = 40
 """Traces that are written."""
 MOST_DEPTHS = 6_000
@@ -70,6 +72,14 @@ class _Meeting:
     doing: tuple[str, str]
     apart: Apart
     met: Met
+    things: tuple[str, str] = ("", "")
+
+    @property
+    def told(self) -> tuple[object, ...]:
+        """What is told of it: where it is the same, it is one."""
+        gap = self.apart.where
+        links = (gap.a, gap.b) if gap is not None else None
+        return self.robots, self.transitions, self.doing, self.things, self.apart.outcome, links
 
 
 @frozen
@@ -87,7 +97,7 @@ class Seen:
     @property
     def pairs(self) -> tuple[Pair, ...]:
         """All that does not surely keep apart."""
-        return (*self.arms.values(), *self.parts)
+        return tuple(dict.fromkeys((*self.arms.values(), *self.parts)))
 
 
 class Look:
@@ -114,6 +124,7 @@ class Look:
         seen = self.seen(found)
         bad = {sides: pair for sides, pair in seen.arms.items() if pair.answer == "no"}
         touching = [sides for sides, pair in bad.items() if not pair.is_held]
+        touching += dict.fromkeys(x for x in found.at_once() if x not in touching)
         explore = self.options.explore
         zones = None
         if touching and explore is not None:
@@ -134,7 +145,7 @@ class Look:
         moves = self._moves(found)
         self.options.stage("sweeping pairs ...")
         arms = self._pairs(found)
-        return Seen(tuple(moves), arms, tuple(self._parts(found)))
+        return Seen(tuple(moves), arms, (*self._parts(found), *self._turning(found)))
 
     def layout_of(
         self,
@@ -160,7 +171,36 @@ class Look:
             self.comparison.nearest() if is_apart else None,
             found.stopped,
             tuple(r.name for r in self.cell.devices),
+            open_at=tuple(self._open_at(found)),
         )
+
+    def _open_at(self, found: Situations) -> Iterator[Open]:
+        """Where it is that not all is known, but for what is wrong there."""
+        for doubt in found.doubts.values():
+            if not doubt.is_sure:
+                who = [_who(found, e) for e in doubt.met.elements]
+                yield Open(
+                    tuple(owner for _, owner in who),
+                    tuple(t for t, _ in who),
+                    reason(doubt.why),
+                    doubt.says,
+                    doubt.do,
+                    self._run(found, doubt.met),
+                )
+
+    def _turning(self, found: Situations) -> Iterator[Pair]:
+        """Parts that are handled on plates which move."""
+        for doubt in found.doubts.values():
+            if doubt.is_sure:
+                (t, owner), (u, other) = (_who(found, e) for e in doubt.met.elements)
+                does = tuple(
+                    "; ".join(dict.fromkeys(map(words, found.graph.commands(e))))
+                    for e in doubt.met.elements
+                )
+                run = self._run(found, doubt.met)
+                yield Pair(
+                    (owner, other), (t, u), (does[0], does[1]), "no", doubt.says, run=run, do=APART
+                )
 
     # --- moves -----------------------------------------------------------------------------------
 
@@ -252,14 +292,14 @@ class Look:
             )
         is_device = self.cell.robot(leg.robot).is_device
         margins = self.comparison.margins(leg)
-        scene, itself = map(as_seen, self.comparison.around(leg, load))
+        scene, itself = self.comparison.around(leg, load)
         answer: Verdict = "yes"
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
             if apart.outcome == "touch" and answer != "no":
                 answer, why = "no", touch_in_words(apart) + what + self._elsewhere(leg)
             elif apart.outcome == "open" and answer == "yes":
-                answer, why = "unknown", apart.why
+                answer, why = "unknown", as_in_runs(apart.why)
         for hurry, words_ in (
             self.comparison.hurries(leg, load),
             self.comparison.tilts(leg, load),
@@ -279,7 +319,7 @@ class Look:
             None if is_device else margins.condition,
             certain(scene),
             certain(itself),
-            scene.where,
+            gap_as_seen(scene.where),
             self._run(found, met) if answer != "yes" else None,
         )
 
@@ -306,15 +346,17 @@ class Look:
             found.sides(*pair, met) for pair, met in zip(pairs, found.pairs.values(), strict=True)
         ]
 
+        touching: set[tuple[Side, Side]] = set()
+
         def is_open(i: int) -> bool:
-            return all_sides[i] not in met_ or met_[all_sides[i]].apart.outcome != "touch"
+            return all_sides[i] not in touching
 
         more = HowFar(self.options.say, "sweeping pairs", total=len(pairs))
         with self.comparison.pairs_ahead(pairs, self.options.jobs, is_open):
             for i, met in enumerate(found.pairs.values()):
                 more()
-                if is_open(i):
-                    self._pair(pairs[i], all_sides[i], met, met_, found)
+                if is_open(i) and self._pair(pairs[i], all_sides[i], met, met_, found):
+                    touching.add(all_sides[i])
         return dict(zip(met_, self._reported(found, met_.values()), strict=True))
 
     def _pair(
@@ -324,29 +366,53 @@ class Look:
         met: Met,
         met_: dict[tuple[Side, Side], _Meeting],
         found: Situations,
-    ) -> None:
-        """Notes where two activities do not surely keep apart."""
+    ) -> bool:
+        """Notes where two activities do not surely keep apart; gives whether they touch."""
         a, b = pair
+        touches = False
         for leg, other, apart in self.comparison.activities(a, b):
-            if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
-                first, second = (_who(found, e)[0] for e in met.elements)
-                does = (self._does(leg), self._does(other))
-                robots = (leg.robot, other.robot)
-                met_[sides] = _Meeting(robots, (first, second), does, apart, met)
-            if apart.outcome == "touch":
+            if apart.outcome == "clear":
+                continue
+            own = sides_of(found, sides, pair, (leg, other), apart)
+            known = met_.get(own)
+            is_touch = apart.outcome == "touch"
+            touches = touches or is_touch
+            if known is None or (is_touch and known.apart.outcome != "touch"):
+                first, second = (
+                    "" if side[1] == ON_PLATE else _who(found, e)[0]
+                    for side, e in zip(own, met.elements, strict=True)
+                )
+                names = apart.where or _NOWHERE
+                (does, thing), (its, its_thing) = (
+                    self._does(activity, side, x, name)
+                    for activity, side, x, name in zip(
+                        pair, own, (leg, other), (names.a, names.b), strict=True
+                    )
+                )
+                robots, things = (leg.robot, other.robot), (thing, its_thing)
+                met_[own] = _Meeting(robots, (first, second), (does, its), apart, met, things)
+            if is_touch and own == sides:
                 break
+        return touches
 
-    def _does(self, leg: Leg) -> str:
-        """A command in words; of what is at rest where it stands."""
+    def _does(self, activity: Activity, side: Side, leg: Leg, name: str) -> tuple[str, str]:
+        """A command in words; of what is at rest where it stands, and what it is if it is no arm or device."""
+        if side[1] == ON_PLATE:
+            contents = next(c for own, c in activity.legs if own is leg)
+            part = like(name, contents)[0]
+            return f"stands at {at_rest(self.cell, part, leg.start)}", shown(name)
         if leg.command is not None:
-            return words(leg.command)
+            return words(leg.command), ""
         where = stands_at(self.cell.robot(leg.robot), leg.start)
-        return f"stands at {where}" if where else "stands"
+        return f"stands at {where}" if where else "stands", ""
 
     def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
         meetings = list(meetings)
-        touching = [m for m in meetings if m.apart.outcome == "touch"]
+        first: dict[tuple[object, ...], _Meeting] = {}
+        for m in meetings:
+            first.setdefault(m.told, m)
+        touching = [m for m in first.values() if m.apart.outcome == "touch"]
         touching.sort(key=lambda m: m.apart.nearest)
         deepest = set({m.robots: m for m in reversed(touching)}.values())
         depths: dict[_Meeting, Apart] = {}
@@ -355,10 +421,11 @@ class Look:
             asked = self.comparison.sweeper.queries - begun
             if m in deepest or asked < MOST_DEPTHS:
                 depths[m] = self.comparison.deepest(m.apart)
-        return [
-            _met(m.robots, m.transitions, m.doing, depths.get(m, m.apart), self._run(found, m.met))
-            for m in meetings
-        ]
+        made = {
+            key: _met(m, depths.get(m, m.apart), self._run(found, m.met))
+            for key, m in first.items()
+        }
+        return [made[m.told] for m in meetings]
 
     def _parts(self, found: Situations) -> list[Pair]:
         """Arms, with what they carry, and parts that stand."""
@@ -417,28 +484,25 @@ def _who(found: Situations, element: int) -> tuple[str, str]:
     return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
 
 
-def _met(
-    robots: tuple[str, str],
-    transitions: tuple[str, str],
-    doing: tuple[str, str],
-    apart: Apart,
-    run: Run | None,
-) -> Pair:
+def _met(meeting: _Meeting, apart: Apart, run: Run | None) -> Pair:
     """Two things that do not surely keep apart; a part has no robot, and no joints."""
     is_touch = apart.outcome == "touch"
+    says = touch_in_words(apart) if is_touch else as_in_runs(apart.why)
     apart = as_seen(apart)
+    joints = zip(meeting.robots, apart.joints, strict=False)
     return Pair(
-        robots,
-        transitions,
-        doing,
+        meeting.robots,
+        meeting.transitions,
+        meeting.doing,
         "no" if is_touch else "unknown",
-        touch_in_words(apart) if is_touch else apart.why,
+        says,
         apart.where,
         apart.where.distance if apart.where else 0.0,
-        tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
+        tuple((r, tuple(map(float, q))) for r, q in joints if r),
         run,
         least=_most_in(apart) if is_touch else None,
         is_held=is_touch and bool(apart.why),
+        things=meeting.things,
     )
 
 
@@ -459,10 +523,10 @@ def touch_in_words(apart: Apart) -> str:
     gap = apart.where
     assert gap is not None
     if apart.why:
-        return apart.why
+        return as_in_runs(apart.why)
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
     least = "" if apart.is_whole else "at least "
-    text = f"`{gap.a}` and `{gap.b}` overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    text = f"{shown(gap.a)} and {shown(gap.b)} overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
     if not apart.is_whole:
         return f"{text}; where it is deepest was not searched for"
     if certain(apart) is None:

@@ -71,31 +71,48 @@ class Guard:
     place: int | None = None
 
 
-def guards(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
+def guards(
+    graph: CellGraph,
+    sides: Sequence[Collection[int]],
+    seen: Collection[int] | None = None,
+) -> Iterator[Guard]:
     """Ways to keep sides apart, the least restrictive first.
 
     Args:
-        sides: of each robot the states in which it is in the zone.
+        sides: of each robot, and of what stands on its plates, the states in which it is in the zone.
+        seen: states that runs come to: to others they do not, since something is impossible before; None: to all.
     """
-    held = held_groups(graph)
-    candidates = [list(itertools.islice(_covers(held, side), _CANDIDATES)) for side in sides]
+    held = held_groups(graph, seen)
+    candidates = [list(itertools.islice(_covers(graph, held, side), _CANDIDATES)) for side in sides]
     ways = sorted(itertools.product(*candidates), key=lambda way: sum(n for n, _ in way))
     tried: set[tuple[Group, ...]] = set()
     for way in ways:
         groups = tuple(sorted({g for _, own in way for g in own}, key=_order))
-        if sum(len(own) for _, own in way) > len(groups) or groups in tried:
-            continue  # a group for two robots keeps nobody out
+        is_shared = sum(len(own) for _, own in way) > len(groups)
+        if groups in tried or (is_shared and not _are_two(held, groups)):
+            continue  # a group for two robots keeps nobody out, unless another token is in one of the others then
         tried.add(groups)
         found = _guard(graph, groups)
         if found is not None:
             yield found
 
 
+def _are_two(held: Held, groups: Sequence[Group]) -> bool:
+    """Whether tokens of two groups are there at once in some state."""
+    return any(
+        not held.states[a].isdisjoint(held.states[b])
+        for a, b in itertools.combinations(groups, 2)
+        if a.place != b.place
+    )
+
+
 def _order(group: Group) -> tuple[int, int, str]:
     return group.place, len(group.fields), repr(group.fields)
 
 
-def _covers(held: Held, side: Collection[int]) -> Iterator[tuple[int, tuple[Group, ...]]]:
+def _covers(
+    graph: CellGraph, held: Held, side: Collection[int]
+) -> Iterator[tuple[int, tuple[Group, ...]]]:
     """Sets of groups of which one is held in each state of a side, and none at the start, with in how many states."""
     states, wanted = held.states, set(side)
     single = sorted((g for g in states if held.most[g] == 1 and 0 not in states[g]), key=_order)
@@ -117,11 +134,48 @@ def _covers(held: Held, side: Collection[int]) -> Iterator[tuple[int, tuple[Grou
             default=None,
         )
         if best is None or not left & states[best]:
-            return
+            chosen = []
+            break
         chosen.append(best)
         left -= states[best]
     if len(chosen) > 1:
         yield sum(len(states[g]) for g in chosen), tuple(sorted(chosen, key=_order))
+    if not whole:
+        yield from _loosely(graph, held, wanted)
+
+
+def _loosely(
+    graph: CellGraph, held: Held, wanted: Collection[int]
+) -> Iterator[tuple[int, tuple[Group, ...]]]:
+    """The same of groups that may be held at once, and more than once; with the place they are not any more.
+
+    First those that are for little else, and that tokens come to from those that are chosen, or go from to them.
+    """
+    states, left = held.states, set(wanted)
+    beside: dict[int, set[int]] = {}
+    for t in graph.partition.net.transitions:
+        if graph.partition.transition_owner[t.index] == 0:
+            places = {arc.place for arc in t.arcs}
+            for place in places:
+                beside.setdefault(place, set()).update(places)
+    some = [g for g in states if states[g] and 0 not in states[g] and not g.fields]
+    chosen: list[Group] = []
+    while left:
+        nearby = set[int]().union(*(beside.get(g.place, ()) for g in chosen))
+        best = max(
+            sorted((g for g in some if left & states[g]), key=_order),
+            key=lambda g: (g.place in nearby, len(left & states[g]) / len(states[g])),
+            default=None,
+        )
+        if best is None:
+            return
+        chosen.append(best)
+        left -= states[best]
+    for group in sorted(chosen, key=lambda g: -len(states[g])):
+        others = [g for g in chosen if g != group]
+        if set(wanted) <= frozenset[int]().union(*(states[g] for g in others)):
+            chosen = others
+    yield sum(len(states[g]) for g in chosen), tuple(sorted(chosen, key=_order))
 
 
 def _guard(graph: CellGraph, groups: tuple[Group, ...]) -> Guard | None:

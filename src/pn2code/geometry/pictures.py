@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from pn2code.geometry.answers import Pair
 from pn2code.robot.backend import Camera
 from pn2code.robot.bullet import BulletBackend
@@ -32,15 +34,25 @@ def draw(cell: RobotCell, pairs: Sequence[Pair], folder: Path, stem: str) -> tup
                 backend.set_joints(name, q)
             backend.mark(pair.where.point, 0.05)
             file = folder / f"{stem}-{number}.png"
-            image = picture(backend, _camera(cell, pair.where.point))
+            image = picture(backend, _camera(cell, backend, pair.where.point))
             out.append(replace(pair, picture=str(file)) if save(image, file) else pair)
     finally:
         backend.close()
     return tuple(out)
 
 
-def _camera(cell: RobotCell, point: tuple[float, float, float]) -> Camera:
-    """From above, beside the arms, with all bases in view."""
+def _camera(cell: RobotCell, backend: BulletBackend, point: tuple[float, float, float]) -> Camera:
+    """From above, beside the arms, with all bases in view, and so that nothing hides where they touch."""
+    from pn2code.robot.render import unhidden
+
     x, y, z = point
     far = max([2.0, *(max(abs(r.base.x - x), abs(r.base.y - y)) for r in cell.robots)])
-    return Camera("touch", (x + 1.5 * far, y - 1.3 * far, z + 1.1 * far), (x, y, 0.8 * z), 42.0)
+    return unhidden(
+        backend,
+        "touch",
+        np.array([x, y, 0.8 * z]),
+        np.array([point]),
+        distance=2.27 * far,
+        azimuth=-41.0,
+        elevation=29.0,
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from pn2code.geometry.answers import Layout, Move, Pair, Proposal
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal
 from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
 from pn2code.geometry.sweeps import RESOLUTION
@@ -37,9 +37,22 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
             yield from _bad_move(move, layout.devices)
     for pair in layout.pairs:
         yield from _bad_pair(pair)
+    for at in layout.open_at:
+        yield from _open_at(at)
     for proposal in layout.proposals:
         yield from _proposed(proposal)
     yield ""
+
+
+def _open_at(x: Open) -> Iterator[str]:
+    yield ""
+    names = " and ".join(f"`{t}`" for t in x.transitions)
+    whose = " and ".join(dict.fromkeys(x.owners))
+    at_once = "may be under way at once" if len(x.transitions) > 1 else "may be under way"
+    yield f"not known: {names} ({whose}) {at_once}"
+    yield f"  {x.says}"
+    yield f"  {x.do}"
+    yield from _run(x.run)
 
 
 def _whose(layout: Layout) -> str:
@@ -138,11 +151,13 @@ def _bad_move(m: Move, devices: Collection[str]) -> Iterator[str]:
 def _bad_pair(p: Pair) -> Iterator[str]:
     yield ""
     yield f"{_ANSWERS[p.answer]}: {_at_once(p)}"
-    for robot, does in zip(p.robots, p.doing, strict=True):
-        yield f"  {robot or 'part'}: {does}"
+    for robot, does, thing in zip(p.robots, p.doing, p.things, strict=True):
+        yield f"  {thing or robot or 'part'}: {does}"
     yield f"  {p.says}"
     if p.is_held:
         yield "  let the net command that the clamp opens, and wait for the answer, before the part is taken away"
+    if p.do:
+        yield f"  {p.do}"
     yield from _run(p.run)
     if p.picture:
         yield f"  picture: {p.picture}"
@@ -152,8 +167,8 @@ def _at_once(p: Pair) -> str:
     """That both may be so at the same time; an arm at rest and a part stand."""
     moving = [f"`{t}`" for t in p.transitions if t]
     standing = [
-        f"{robot} at rest" if robot else "a part"
-        for t, robot in zip(p.transitions, p.robots, strict=True)
+        thing or (f"{robot} at rest" if robot else "a part")
+        for t, robot, thing in zip(p.transitions, p.robots, p.things, strict=True)
         if not t
     ]
     if not standing:
@@ -178,6 +193,7 @@ _FROM_START = (
     "from the start of each run, so that no place alone keeps them apart: let HOME, or the way of the others, be "
     "elsewhere, or send it away first and wait for its answer"
 )
+_PUT_THERE = "where it has been put: nobody may come there until it is taken away"
 _LATER = "where a command has left it: bring it out (such as by `move_home`) before it answers"
 
 
@@ -186,11 +202,13 @@ def _proposed(p: Proposal) -> Iterator[str]:
     zone = " and ".join(f"`{t}`" for t in p.transitions)
     if p.rests:
         come = "come" if len(p.transitions) > 1 else "comes"
-        resting = " and ".join(dict.fromkeys(x.robot for x in p.rests))
+        resting = " and ".join(dict.fromkeys(x.thing or x.robot for x in p.rests))
         rest_there = f"{resting} rest{'' if ' and ' in resting else 's'}"
         yield f"{zone} {come} to where {rest_there}" if zone else f"{resting} rest where they touch"
         for rest in p.rests:
-            yield f"  {rest.robot} rests at {rest.at}, {_FROM_START if rest.from_start else _LATER}"
+            later = _PUT_THERE if rest.thing else _LATER
+            where = _FROM_START if rest.from_start else later
+            yield f"  {rest.thing or rest.robot} rests at {rest.at}, {where}"
     else:
         whose = f" ({' and '.join(p.robots)})" if len(p.robots) > 1 else ""
         yield f"{zone}{whose} share a zone that the net does not guard"

@@ -89,7 +89,7 @@ class Sweeper:
             found = self._backend.pairs("robots", a.robot, limit, b.robot)
             return [
                 replace(x, allowed=None)
-                if not turning.isdisjoint(x.rides)
+                if not turning.isdisjoint(x.plates)
                 else replace(x, stands=True)
                 if free and free <= calm.intersection(x.rides)
                 else x
@@ -289,9 +289,9 @@ class Sweeper:
         return Apart("clear", max(0.0, min(least, best)), best, where, (at, 0.0))
 
 
-def _turning(a: Track, b: Track) -> set[str]:
-    """The robots of which a turntable turns: what is on it touches no other one, on whatever move."""
-    return {x.robot for x in (a, b) if x.leg.kind != "axis" and not x.is_calm}
+def _turning(a: Track, b: Track) -> frozenset[str]:
+    """The turntables, belts and other axes that move: what is on them touches no other robot, on whatever move."""
+    return a.turning | b.turning
 
 
 def much_less(distance: float) -> float:

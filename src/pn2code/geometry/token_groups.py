@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.graph import CellGraph, Element
@@ -117,8 +117,8 @@ def moving(t: FlatTransition, places: frozenset[int]) -> Iterator[FlatArc]:
     return (a for a in t.arcs if a.place in places and a.kind not in _UNCHANGED)
 
 
-def held_groups(graph: CellGraph) -> Held:
-    """All groups of places of the supervisor."""
+def held_groups(graph: CellGraph, seen: Collection[int] | None = None) -> Held:
+    """All groups of places of the supervisor; `seen`: in these states, None: in all."""
     partition = graph.partition
     own = [
         p for p in range(len(partition.net.places))
@@ -128,11 +128,17 @@ def held_groups(graph: CellGraph) -> Held:
     states: dict[Group, set[int]] = {group: set() for group in whole.values()}
     most: Counter[Group] = Counter()
     for i, marking in enumerate(graph.marked):
+        if seen is not None and i not in seen:
+            continue
         for p, tokens in marking.items():
             if tokens and p in whole:
                 states[whole[p]].add(i)
                 most[whole[p]] = max(most[whole[p]], tokens)
     for marked, among in _coloured(graph, own).items():
+        if seen is not None:
+            among = [i for i in among if i in seen]
+            if not among:
+                continue
         found: Counter[Group] = Counter()
         for (p, value), tokens in marked:
             for fields in _views(partition.net.places[p].colset, value):

@@ -169,8 +169,13 @@ class Track:
     @property
     def is_calm(self) -> bool:
         """Whether its turntables stand meanwhile."""
+        return not self.turning
+
+    @property
+    def turning(self) -> frozenset[str]:
+        """Its turntables, or belts and other axes of a device, that move meanwhile."""
         assert self.leg.path is not None
-        return not turned_by(self.shape.robot, self.leg.path)
+        return turned_by(self.shape.robot, self.leg.path)
 
     @property
     def trouble(self) -> str:

@@ -10,7 +10,8 @@ import numpy as np
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.words import numbers, position
 from pn2code.robot.external import ExternalAxis
-from pn2code.robot.robot_cell import CellRobot
+from pn2code.robot.parts import Part
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, pose_of
 
 
@@ -29,3 +30,10 @@ def stands_at(robot: CellRobot, stand: Stand) -> str:
 def _axis(axis: ExternalAxis, robot: CellRobot, q: Array, moved: tuple[str, ...]) -> str:
     place = float(np.sum(q[[robot.index(name) for name in moved]]))
     return f"{axis.name} {position(place, axis.is_track)}"
+
+
+def at_rest(cell: RobotCell, part: Part, stand: Stand) -> str:
+    """Where a part stands on a plate of an arm or device, in mm: however the plate is turned, its directions."""
+    robot = cell.robot(stand.robot)
+    frame = robot.T_world_plate(robot.plate(part.plate), stand.q) @ part.frame
+    return " ".join(f"{v:.0f}" for v in np.round(1000.0 * frame[:3, 3]) + 0.0)

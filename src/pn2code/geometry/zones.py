@@ -11,12 +11,16 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pn2code.cell.partition import Partition
 from pn2code.geometry import mutex
+from pn2code.geometry.activities import Activity
 from pn2code.geometry.answers import Proposal, Rest, Served
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
-from pn2code.geometry.situations import Side, Situations
-from pn2code.geometry.where import stands_at
+from pn2code.geometry.legs import Leg
+from pn2code.geometry.situations import ON_PLATE, Side, Situation, Situations
+from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import reason
+from pn2code.robot.parts import Part
 
 Explore = Callable[[Partition], CellGraph | None]
 Sides = tuple[Side, Side]
@@ -56,11 +60,16 @@ class Zones:
     def _proposal(self, zone: frozenset[Side], bad: Collection[Sides]) -> Proposal:
         found, net = self._found, self._found.graph.partition.net
         arms = sorted({side[0] for side in zone})
-        robots = tuple(found.robots[a] for a in arms)
+        robots = tuple(map(found.name_of, arms))
         names = tuple(dict.fromkeys(net.transitions[t].name for _, t, _ in sorted(zone) if t >= 0))
-        rests = tuple(self._rest(side) for side in sorted(zone) if side[1] < 0)
+        rests = tuple(dict.fromkeys(self._rest(side) for side in sorted(zone) if side[1] < 0))
+        # What stands on a plate is there for whatever its owner does: that is a side of its own.
+        whose = sorted({(s[0], s[1] == ON_PLATE) for s in zone})
         sides = [
-            frozenset[int]().union(*(found.states[s] for s in zone if s[0] == arm)) for arm in arms
+            frozenset[int]().union(
+                *(found.states[s] for s in zone if (s[0], s[1] == ON_PLATE) == own)
+            )
+            for own in whose
         ]
         name = mutex.free_name(net)
         tried = ""
@@ -97,7 +106,7 @@ class Zones:
         """First those by a place that is there."""
         graph = self._found.graph
         yield from itertools.islice(mutex.with_keepers(graph, sides), mutex.MOST_TRIED // 2)
-        yield from mutex.guards(graph, sides)
+        yield from mutex.guards(graph, sides, frozenset(s.state for s in self._found.situations))
 
     def _told(self, guard: mutex.Guard) -> str:
         """Who takes the token, and who gives it back."""
@@ -131,8 +140,17 @@ class Zones:
 
     def _rest(self, side: Side) -> Rest:
         """Where who is at rest there rests."""
-        arm, _, number = side
+        arm, kind, number = side
         found = self._found
+        if kind == ON_PLATE:
+            part = found.riders[number]
+            stands = (s.stands[arm] for s in found.situations if _has(s, part))
+            stand = next(stands)
+            where = at_rest(self._cell, part, stand)
+            known = found.doing.start.parts.present.values()
+            is_first = any((p.kind, p.plate) == (part.kind, part.plate) for p in known)
+            thing = f"{part.kind.name} on {part.plate}"
+            return Rest(found.robots[arm], where, is_first, thing)
         name = found.robots[arm]
         stands = (s.stands[arm] for s in found.situations)
         stand = next(s for s in stands if s.number == number)
@@ -162,6 +180,9 @@ class Zones:
         found.explore()
         if found.why:
             return f"with it, {reason(found.why)}", ""
+        if found.doubts:
+            doubt = next(iter(found.doubts.values()))
+            return f"with it, {doubt.says}", ""
         if self._can_meet(found, zone, bad):
             return "with it, arms can still collide", ""
         if found.stopped:
@@ -182,12 +203,49 @@ class Zones:
         """Whether two of a zone are not surely apart, or others that were so before."""
         for pair, met in found.pairs.items():
             a, b = (found.doing.activities[number] for number in pair)
-            sides = found.sides(a, b, met)
-            if sides in bad and not zone.issuperset(sides):
-                continue
-            if any(x.outcome != "clear" for _, _, x in self._comparison.activities(a, b)):
-                return True
+            whole = found.sides(a, b, met)
+            for leg, other, apart in self._comparison.activities(a, b):
+                if apart.outcome != "clear":
+                    own = self._as_before(
+                        sides_of(found, whole, (a, b), (leg, other), apart), found
+                    )
+                    if own not in bad or zone.issuperset(own):
+                        return True
         return False
+
+    def _as_before(self, sides: Sides, found: Situations) -> Sides:
+        """Parts on plates have the numbers of the situations in which they are first."""
+        one, other = (
+            (*s[:2], self._found.number_of(found.riders[s[2]])) if s[1] == ON_PLATE else s
+            for s in sides
+        )
+        return one, other
+
+
+def _has(s: Situation, part: Part) -> bool:
+    some = s.contents.parts.present.values()
+    return any((p.kind, p.plate) == (part.kind, part.plate) for p in some)
+
+
+def sides_of(
+    found: Situations,
+    sides: Sides,
+    pair: tuple[Activity, Activity],
+    legs: tuple[Leg, Leg],
+    apart: Apart,
+) -> Sides:
+    """What touches of two arms: of one that rests it may be what stands on a plate of it."""
+    if apart.where is None:
+        return sides
+    out = []
+    for side, activity, leg, name in zip(
+        sides, pair, legs, (apart.where.a, apart.where.b), strict=True
+    ):
+        contents = next((c for own, c in activity.legs if own is leg), None)
+        if contents is not None:
+            side = found.resting(side, name, leg, contents)
+        out.append(side)
+    return out[0], out[1]
 
 
 def together(pairs: Sequence[Sides]) -> list[frozenset[Side]]:

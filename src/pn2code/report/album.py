@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from pn2code.robot.render import Film, cameras, picture, save
+from pn2code.robot.render import Film, cameras, close_up, picture, save
 from pn2code.robot.transforms import Array
 from pn2code.run.engine import Engine
 
@@ -71,7 +71,7 @@ class Album:
             action = robot.tool_action()
             if action and action not in self._actions:
                 self._actions.add(action)
-                self._take(engine, action, "tools")
+                self._take(engine, action, "tools", robot.name)
         # While nothing moves there are no samples: the film then shows the last one for as long as it takes.
         while self._film is not None and t >= self._next_frame:
             self._next_frame += FILM_SPEED / FRAMES_PER_SECOND
@@ -87,10 +87,14 @@ class Album:
             self._film.close()
             self._film = None
 
-    def _take(self, engine: Engine, moment: str, view: str) -> None:
+    def _take(self, engine: Engine, moment: str, view: str, robot: str = "") -> None:
         if not self._pictures:
             return
-        camera = next(c for c in cameras(engine.cell, engine.backend) if c.name == view)
+        cell, backend = engine.cell, engine.backend
+        if robot in {r.name for r in cell.robots}:
+            camera = close_up(cell, backend, robot)
+        else:
+            camera = next(c for c in cameras(cell, backend) if c.name == view)
         image = picture(engine.backend, camera, *SIZE)
         if image is None:
             return

@@ -34,7 +34,8 @@ class Clearance:
         point: where, on `a`, in the world; other: the nearest point on `b`.
         stands: `a` stands on `b`, so the overlap is permitted on joint moves as well.
         second: between robots, the other one.
-        rides: the robots of which only a turntable, or what stands on it, is near.
+        rides: the robots of which only a turntable, or what stands on it, is near; plates: of each which one, of a
+            device the axis on which it stands.
     """
 
     kind: ClearanceKind
@@ -48,10 +49,15 @@ class Clearance:
     stands: bool = False
     second: str = ""
     rides: tuple[str, ...] = ()
+    plates: tuple[str, ...] = ()
 
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""
         return self.allowed if self.stands or not is_free else None
+
+
+BEFORE = 0.12
+"""m: what is no further before a place belongs to what is looked at there."""
 
 
 @frozen
@@ -116,6 +122,11 @@ class Backend(Protocol):
 
     def light_zone(self, name: str) -> None:
         """Something was too fast in a zone: pictures show it so from now on."""
+
+    def hidden(
+        self, eye: tuple[float, float, float], points: Sequence[tuple[float, float, float]]
+    ) -> int:
+        """How many of some places something else hides from an eye: what is further before them than `BEFORE`."""
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255; None: this backend has no eyes."""

@@ -25,6 +25,7 @@ from lxml import etree
 from pn2code.base.frozen import frozen, record
 from pn2code.robot import collision_meshes, urdf
 from pn2code.robot.backend import (
+    BEFORE,
     BackendName,
     Beside,
     Camera,
@@ -465,9 +466,20 @@ class BulletBackend:
                     who = first.robot or robot
                     if kind == "scene" and first.rides:
                         allowed, stands = max(allowed or 0.0, PART_CONTACT), True
-                    rides = self._near_plates((first, one), (second, two))
+                    plates = self._near_plates((first, one), (second, two))
                     gap = Clearance(
-                        kind, who, one, two, c[8], allowed, c[5], c[6], stands, second.robot, rides
+                        kind,
+                        who,
+                        one,
+                        two,
+                        c[8],
+                        allowed,
+                        c[5],
+                        c[6],
+                        stands,
+                        second.robot,
+                        _robots_of(plates),
+                        plates,
                     )
                     _keep_nearest(best, gap)
         return list(best.values())
@@ -617,10 +629,10 @@ class BulletBackend:
                 else:
                     continue
                 if old is None or c[8] < old.distance:
-                    rides = self._near_plates((a, name_a), (b, name_b))
+                    plates = self._near_plates((a, name_a), (b, name_b))
                     item = Clearance(
                         kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands, b.robot,
-                        rides,
+                        _robots_of(plates), plates,
                     )  # fmt: skip
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
@@ -684,8 +696,10 @@ class BulletBackend:
         return [] if best is None else [best]
 
     def _near_plates(self, *near: tuple[_Side, str]) -> tuple[str, ...]:
-        """The robots of which only a turntable, or what stands on it, is near."""
-        return tuple(side.robot for side, name in near if side.rides or name in self._plates)
+        """The turntables of which one, or what stands on it, is near, and not the rest of its robot."""
+        return tuple(
+            side.rides or name for side, name in near if side.rides or name in self._plates
+        )
 
     def _permitted(self, a: _Side, b: _Side, one: str, two: str, *, stands: bool) -> float | None:
         """The same of two sides; of what stands on the other one, None: it is not tested."""
@@ -726,6 +740,20 @@ class BulletBackend:
                 self._p.removeBody(self._zones[name], physicsClientId=self._client)
                 broken = zone_body(self._cell.zones[name], is_broken=True)
                 self._zones[name] = self._load_body(broken, True).id
+
+    def hidden(
+        self, eye: tuple[float, float, float], points: Sequence[tuple[float, float, float]]
+    ) -> int:
+        """How many of some places something else hides from an eye: what is further before them than `BEFORE`."""
+        self._p.performCollisionDetection(physicsClientId=self._client)
+        found = self._p.rayTestBatch(
+            [eye] * len(points), list(points), physicsClientId=self._client
+        )
+        far = [float(np.linalg.norm(np.subtract(p, eye))) for p in points]
+        return sum(
+            hit[0] >= 0 and (1.0 - hit[2]) * way > BEFORE
+            for hit, way in zip(found, far, strict=True)
+        )
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255."""
@@ -769,6 +797,10 @@ class BulletBackend:
                 self._p.disconnect(self._client)
             self._client = -1
             self._folder.cleanup()
+
+
+def _robots_of(plates: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(p.partition("/")[0] for p in plates)
 
 
 def _keep_nearest(best: dict[tuple[str, str], Clearance], gap: Clearance) -> None:

@@ -47,6 +47,12 @@ class FakeBackend:
     def light_zone(self, name: str) -> None:
         """Nothing is shown."""
 
+    def hidden(
+        self, eye: tuple[float, float, float], points: Sequence[tuple[float, float, float]]
+    ) -> int:
+        """Nothing is seen."""
+        return 0
+
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """None: no pictures."""
         return None

@@ -145,6 +145,10 @@ class Ground:
         """m: of a ball around the frame of a part of a kind."""
         return max(h.radius for h in self._kinds[kind])
 
+    def corners_of(self, kind: str, frame: Array) -> Array:
+        """Of the pieces of a part of a kind that is there, and of its frame, (n, 3)."""
+        return np.vstack([frame[None, :3, 3], *(h.at(frame).corners for h in self._kinds[kind])])
+
     def middle(self, kind: PartKind, frame: Array) -> Array:
         """Where the middle of a part is, in the world."""
         return middle_of(self._placed(kind, frame))

@@ -130,6 +130,7 @@ class Monitor:
         phase: str = "",
         kinds: Mapping[str, MotionKind] | None = None,
         calm: Collection[str] = (),
+        turning: Collection[str] = (),
     ) -> Verdict:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
@@ -140,6 +141,8 @@ class Monitor:
                 on lines and arcs and while the tool works.
             calm: the robots whose turntables stand: what is on these does not go with a joint move. What
                 is on others touches no other robot, on lines and arcs neither.
+            turning: turntables, belts and other axes that move, as `mill/lift`: what stands on these touches nothing
+                of others either.
         """
         kinds = kinds or {}
         t = float(t)
@@ -170,7 +173,8 @@ class Monitor:
                 for name in others
             )
             gap = replace(found, allowed=found.permitted(is_free=free))
-            if any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides):
+            moves = any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides)
+            if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:

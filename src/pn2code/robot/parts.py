@@ -204,6 +204,10 @@ class Parts:
         tool = self.tool_of(robot)
         return self.cell.robot(robot).of_tool(tool, tcp) if tool else tcp
 
+    def plate_frame(self, plate: str) -> Array:
+        """`T_world_plate` of a turntable, where it is now."""
+        return self._plates[plate]
+
     def riders(self, plate: str) -> list[Part]:
         """What turns with a turntable."""
         return [p for p in self.present.values() if p.plate == plate]

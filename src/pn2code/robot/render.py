@@ -22,6 +22,8 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
 WIDTH, HEIGHT = 1280, 720
+_TOGETHER = 0.6
+"""m: tools that are no further apart are seen together."""
 
 
 def cameras(cell: RobotCell, backend: Backend) -> tuple[Camera, ...]:
@@ -40,6 +42,37 @@ def cameras(cell: RobotCell, backend: Backend) -> tuple[Camera, ...]:
     tools = _camera("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
     seam = _camera("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
     return (overview, behind, tools, seam)
+
+
+def close_up(cell: RobotCell, backend: Backend, robot: str) -> Camera:
+    """Of what a tool does: `tools`, but from where nothing hides its TCP; of the tool alone if others are far away."""
+    tip = backend.tcp(robot)[:3, 3]
+    tips = np.array([backend.tcp(r.name)[:3, 3] for r in cell.robots])
+    near = tips[np.linalg.norm(tips - tip, axis=1) <= _TOGETHER]
+    middle = near.mean(axis=0)
+    spread = float(np.abs(near - middle).max())
+    return unhidden(backend, "tools", middle, near, distance=1.5 + 1.6 * spread)
+
+
+def unhidden(
+    backend: Backend,
+    name: str,
+    target: Array,
+    points: Array,
+    *,
+    distance: float,
+    azimuth: float = -28.0,
+    elevation: float = 16.0,
+) -> Camera:
+    """A camera from which the least of some places is hidden: as it is told if that is no worse, else from beside."""
+    off = 0.04 * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    places = [
+        (float(x), float(y), float(z)) for x, y, z in (points[:, None] + off[None]).reshape(-1, 3)
+    ]
+    turns = sorted(range(-180, 180, 20), key=abs)
+    ways = [(azimuth + a, e) for e in (elevation, 32.0, 48.0) for a in turns]
+    views = [_camera(name, target, azimuth=a, elevation=e, distance=distance) for a, e in ways]
+    return min(views, key=lambda view: backend.hidden(view.eye, places))
 
 
 def _extent(cell: RobotCell) -> tuple[Array, Array]:

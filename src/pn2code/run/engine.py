@@ -743,7 +743,14 @@ class Engine:
             for r in self.robots
             if r.motion is not None and r.arm is not None and not turned(r.arm.robot, r.motion)
         ]
-        verdict = self.monitor.check(t, joints, self.activity, kinds, calm)
+        turning = frozenset[str]().union(
+            *(
+                turned(r.arm.robot, r.motion)
+                for r in self.robots
+                if r.motion is not None and r.arm is not None
+            )
+        )
+        verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning)
         self.record.sample(verdict)
         for robot, seen in zip(self._arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":

@@ -161,6 +161,10 @@ def test_devices_that_move_are_no_arms(tmp_path: Path) -> None:
 def test_a_geometry_that_is_not_known(tmp_path: Path) -> None:
     assert geometry(tmp_path, 3, why="too many states").answer == OPEN
     assert geometry(tmp_path, 3, {**LAYOUT, "pairs_answer": "unknown"}).answer == OPEN
+    where = {"transitions": ["A.Put", "B.Turn"], "says": "`a` creates `box.1` there", "do": "wait"}
+    at = geometry(tmp_path, 3, {**LAYOUT, "pairs_answer": "unknown", "open_at": [where]})
+    assert at.findings[-1].says == "`a` creates `box.1` there; wait"
+    assert at.findings[-1].answer == OPEN and "A.Put and B.Turn" in at.findings[-1].about
     stopped = {**LAYOUT, "pairs_answer": "unknown", "pairs_open": "as far as runs get"}
     said = geometry(tmp_path, 1, {**stopped, "moves_answer": "no", "nearest": None})
     assert said.findings[1].answer == OPEN and "; as far as runs get" in said.findings[1].says

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -106,8 +107,8 @@ def test_depths_are_searched_for_one_of_each_two_robots_and_then_as_far_as_it_go
     robots = [("r", "s"), ("r", "s"), ("s", "t"), ("r", "s")]
     depths = [0.01, 0.03, 0.02, 0.025]
     meetings = [
-        look._Meeting(who, ("A", "B"), ("", ""), touch(deep), Met(0, (0, 1)))
-        for who, deep in zip(robots, depths, strict=True)
+        look._Meeting(who, ("A", "B"), ("", f"does {i}"), touch(deep), Met(0, (0, 1)))
+        for i, (who, deep) in enumerate(zip(robots, depths, strict=True))
     ]
     for most, known in ((0, [1, 2]), (300, [1, 2, 3]), (6_000, [0, 1, 2, 3])):
         monkeypatch.setattr(look, "MOST_DEPTHS", most)
@@ -118,3 +119,6 @@ def test_depths_are_searched_for_one_of_each_two_robots_and_then_as_far_as_it_go
             assert p.answer == "no"
             assert ("overlap by at least" in p.says) == (i not in known)
             assert ("nowhere on the way by more than" in p.says) == (i in known)
+    # What is the same but for the run is one.
+    again = Look._reported(self, Any, [*meetings, replace(meetings[0], met=Met(5, (0, 1)))])  # type: ignore[arg-type]
+    assert len(again) == 5 and again[4] is again[0]

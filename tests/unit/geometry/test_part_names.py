@@ -73,7 +73,7 @@ def test_two_that_move_together_may_have_one_name_in_runs() -> None:
         (f"arm/{held('blank.1', 'arm')}", "`blank.1` (a part, held by `arm`)"),
         (f"arm/{held('gripper', 'arm')}", "`gripper` (a tool, held by `arm`)"),
         (standing("blank.2"), "`blank.2` (a part, which stands there)"),
-        (on_plate("blank.2", "left/plate", 3), "`blank.2` (a part, on a belt or turntable)"),
+        (on_plate("blank.2", "left/plate", 3), "`blank.2` (a part, on `left/plate`)"),
     ],
 )
 def test_it_is_said_what_comes_near(name: str, words: str) -> None:

@@ -244,10 +244,12 @@ def test_what_a_belt_takes_onto_another_one_is_handled_there() -> None:
     cell = two_belts(0.6)
     doing = Doing(Planner(cell), cell)
     home = doing.planner.home("feeder")
-    for way, there in ((0.5, []), (0.69, [1.29])):
+    for way, onto in ((0.5, set()), (0.69, {"feeder/away"})):
         found = doing.of("feeder", (run(way),), home, doing.start, (home,))
         assert not found.fault
-        assert [round(float(at[1]) + 1.7, 6) for at, _ in found.handled] == there
+        begins, ends = found.moments
+        assert begins.goes == "" and round(ends.point[1] + 1.7, 6) == round(0.6 + way, 6)
+        assert ends.plates == onto
 
 
 @pytest.mark.parametrize("way", [0.71, 0.9])
@@ -408,8 +410,11 @@ def test_whoever_handles_parts_near_a_line_that_runs_is_seen() -> None:
     """Near the second belt, with a part that is still on the first one: it would pass there."""
     cell = lined((0.2,))
     doing = Doing(Planner(cell), cell)
-    assert doing.within("feeder/away", (np.array([1.9, -0.7, 0.6]), 0.1), [doing.start])
-    assert not doing.within("feeder/away", (np.array([2.6, -0.7, 0.6]), 0.1), [doing.start])
+    for where, near in (((1.62, -0.7, 0.6), True), ((1.9, -0.7, 0.6), False)):
+        assert doing.within("feeder/away", (np.array(where), 0.05), [doing.start]) is near
+    empty = Doing(Planner(lined(())), lined(()))
+    above = np.array([1.62, -0.7, 0.6]), 0.05
+    assert not empty.within("feeder/away", above, [empty.start])
 
 
 @pytest.mark.parametrize(

@@ -186,3 +186,23 @@ def test_what_stands_on_a_calm_plate_does_not_go_with_a_joint_move(monitor, back
     assert fault(found, on_a_line) is None
     assert fault(found, on_a_line, calm=("robot2",)) is not None
     assert fault(replace(found, rides=()), on_a_line, calm=("robot2",)) is None
+
+
+def test_what_stands_on_an_axis_of_a_device_that_moves_is_not_touched(monitor, backend, home):
+    """While the lift stands a tool may grip there, also while a door of the same device moves; and so the scene."""
+    found = Clearance(
+        "robots", "mill", "box.1", "robot2/tool_tip", -1e-4, 0.001,
+        second="robot2", rides=("mill",), plates=("mill/lift",),
+    )  # fmt: skip
+    kinds = {"mill": "axis", "robot2": "lin"}
+
+    def fault(gap, turning):
+        backend.gaps = [gap]
+        gap = replace(gap, robot="robot1")  # a pose that is known
+        backend.gaps = [gap]
+        return monitor.check(0.0, home, kinds=kinds, turning=turning).fault
+
+    assert fault(found, ()) is None and fault(found, {"mill/door"}) is None
+    assert fault(found, {"mill/lift"}) is not None
+    beside = replace(found, kind="scene", b="fence", second="")
+    assert fault(beside, {"mill/lift"}) is None
