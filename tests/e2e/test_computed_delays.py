@@ -16,17 +16,18 @@ INTEGER = """
     net Early
       standard
       colset T = int timed;
+      colset U = int with 0..40 timed;
       colset K = int with 0..3;
-      var t, u: T;  var k: K;
+      var t: T;  var u: U;  var k: K;
       val base = 2;
       fun early (t, k) = IntInf.fromInt (t mod 4 * k + base)
       place A : T = 1`3@100 +++ 1`5@200 +++ 2`6@300
-      place B : T = 1`1@50
+      place B : U = 1`1@50
       place Keys : K = 1`1 ++ 1`3
-      trans Go guard [t > 2]
-        in A : t@+(t * k)
+      trans Go guard [t > 0]
+        in A : t@+(2 * k + base)
         both Keys : k
-        out B : (t + k)@+7
+        out B : ((t + k) mod 41)@+7
       trans Other
         in B : u@++(early (u, 3))
         in A : t@+base
@@ -36,24 +37,31 @@ REAL = """
     net Real
       standard
       option realtimestamp true
-      colset T = int timed;
+      colset T = int with 0..12 timed;
       colset R = real timed;
+      colset S = real;
       var t: T;  var x: R;
       fun early x = x / 3.0
       place A : T = 1`1@0.3 +++ 1`2@0.7 +++ 1`3@1.1
       place B : R = 1`0.1@5.7 +++ 1`0.7@9.3
       place C : R
+      place Of : S = 1`0.1 ++ 1`0.7
       trans Go
         in A : t@++(0.1 * Real.fromInt t)
         out A : (t mod 11 + 1)@++(1.0 / 3.0)
       trans Take
+        in Of : x
         in B : x@++(early x + 0.2)
         out C : (x + 0.1)@++(0.1 + x)
+        out Of : x + 0.1
       trans Back guard [x < 30.0]
+        in Of : x
         in C : x@++x
         inhibit B
         out B : 1`x@++(0.7) +++ 1`(x + 0.3)@++(x * 1.7)
+        out Of : 1`x ++ 1`(x + 0.3)
       trans Less
+        both Of : x
         in B : 2`x
         out B : 1`x@++(0.3)
 """
@@ -61,7 +69,7 @@ REAL_CONSTANT = """
     net Thirds
       standard
       option realtimestamp true
-      colset T = int timed;
+      colset T = int with 0..3 timed;
       var t: T;
       place A : T = 1`1@0.3 +++ 1`2@0.8 +++ 1`3@1.1
       trans Go
