@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
 from pn2code.dossier.geometry import Table, answered, tables
 from pn2code.dossier.steps import Done
@@ -262,7 +263,11 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
         for name, row in _rows(said, "clearances")
     ]
     found += [
-        Finding(f"worst conditioning, {name}", NOTED, f"{row['worst']:.1f} at {row['t']:.2f} s")
+        Finding(
+            f"worst conditioning, {name}",
+            NOTED,
+            f"{condition_text(row['worst'], 1)} at {row['t']:.2f} s",
+        )
         for name, row in _rows(said, "conditioning")
     ]
     found += [
