@@ -255,7 +255,7 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     others = [x for x in said.get("failed") or () if x not in (said.get("final") or ())]
     why = f"(a failure: {'; '.join(others)})" if others else ""
     text = " ".join(x for x in (ended, places and f"in {places}", why, said["reason"]) if x)
-    found = [Finding("end", YES if is_good else NO, text)]
+    found = [Finding("end of the run", YES if is_good else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [

@@ -89,6 +89,7 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
     (tmp_path / "x/summary.json").write_text(json.dumps(failed))
     c = chapter(tmp_path, "run", None)
     assert (c.answer, c.findings[0].says) == (NO, "finished in Cell.Supervisor.Failed")
+    assert c.findings[0].about == "end of the run"
     (tmp_path / "x/summary.json").write_text(json.dumps({**said, "verdict": "stopped"}))
     assert chapter(tmp_path, "run", None, 1).answer == NO
 
