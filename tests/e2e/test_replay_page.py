@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from helpers.browser import Page, launched, opened
+from helpers.fingers import PHONE
 from helpers.legible import complaints
 from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
@@ -515,13 +516,30 @@ def test_an_arm_in_a_singularity_has_no_number(tmp_path: Path, chromium: Any) ->
     ]
     file = tmp_path / "replay.html"
     file.write_text(page(shown), encoding="utf-8")
-    with opened(chromium) as browser:
-        browser.open(file)
-        for t, says in ((0.5, "conditioning above 1,000,000"), (2.0, "conditioning 7.3")):
-            browser.ask("t => replay.seek(t)", t)
-            told = " ".join(browser.page.locator("#cell .status .arm").first.inner_text().split())
-            assert told.endswith(f"· {says}")
-        assert browser.errors == []
+    for options in ({}, PHONE):
+        with opened(chromium, **options) as browser:
+            browser.open(file)
+            if options:
+                browser.page.get_by_role("button", name="Cell", exact=True).click()
+            arm = browser.page.locator("#cell .status .arm").first
+            for t, says in ((0.5, "conditioning above 1,000,000"), (2.0, "conditioning 7.3")):
+                browser.ask("t => replay.seek(t)", t)
+                assert " ".join(arm.inner_text().split()).endswith(f"· {says}")
+                assert arm.evaluate("(e) => e.scrollWidth <= e.clientWidth"), "it is cut off"
+            assert browser.errors == []
+
+
+def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium: Any) -> None:
+    shown = with_arm(described(tmp_path, PAIR))
+    final = ["Top.Robot has stopped after a fault"]
+    shown["verdict"] = {"word": "finished", "reason": "", "final": final, "failed": final}
+    with opened(chromium, **PHONE) as browser:
+        browser.open(written(tmp_path, shown))
+        chip, search = (
+            browser.page.locator(f"#top {which}").bounding_box() for which in (".chip", "#search")
+        )
+        assert chip["height"] < 30 and search["width"] >= 60
+        assert browser.ask("() => document.documentElement.scrollWidth") <= 390
 
 
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
