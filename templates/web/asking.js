@@ -6,7 +6,12 @@ import { diagnostic, field, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
 
-const EXAMPLES = ["deadlock free", "always { time () >= 0 }"];
+const EXAMPLES = [
+  "deadlock free",
+  "bound Page'Place <= 3",
+  "never { Mark.Page'Place 1 = [] }",
+  "every fires(Page'Transition) is followed by fires(Page'Other)",
+];
 
 export class Asking {
   /**
@@ -23,7 +28,7 @@ export class Asking {
     this.field.input.value = EXAMPLES[0];
     this.list = el("ol", { class: "plain answers", "aria-live": "polite", "aria-label": "Answers" });
     host.append(this.field.root,
-      el("p", { class: "note", text: "The whole state space of the net is explored, from its initial marking on; you can play meanwhile. Examples: deadlock free; Page'Place <= 3; never { Mark.Page'Place 1 = [] }; every A is followed by B." }),
+      el("p", { class: "note", text: `The whole state space of the net is explored, from its initial marking on; you can play meanwhile. Examples: ${EXAMPLES.join("; ")}.` }),
       this.list);
   }
 

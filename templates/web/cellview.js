@@ -5,7 +5,7 @@ import { upperBound } from "./course.js";
 import { axesOf } from "./deviceaxes.js";
 import { colour, el } from "./dom.js";
 import { FIELD, distance, look, ride, spin } from "./eye.js";
-import { Path, frames, valueAt } from "./kinematics.js";
+import { Path, conditionText, frames, valueAt } from "./kinematics.js";
 import { Gaps } from "./gaps.js";
 import { armAt, wayAt } from "./picking.js";
 import { CellScene, place } from "./scene3d.js";
@@ -387,7 +387,7 @@ export class CellView {
       const at = [tcp[3], tcp[7], tcp[11]].map((v) => (v * 1000).toFixed(1)).join("  ");
       return el(
         "span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"}${tool} · TCP ${at} mm`,
-        Number.isFinite(condition) ? ` · conditioning ${condition.toFixed(1)}` : "",
+        Number.isFinite(condition) ? ` · conditioning ${conditionText(condition)}` : "",
       );
     });
     this.legend.replaceChildren(...rows);

@@ -137,3 +137,11 @@ export function valueAt(curve, now) {
   const x = Math.min(Math.max((now - curve.t[i]) / (curve.t[i + 1] - curve.t[i]), 0), 1);
   return curve.v[i] * (1 - x) + curve.v[i + 1] * x;
 }
+
+/** A larger condition number is rounding: the arm is in a singularity, and how large the number is has no meaning. */
+const MOST_CONDITION = 1e6;
+
+/** @param {number} condition */
+export function conditionText(condition) {
+  return condition > MOST_CONDITION ? `above ${MOST_CONDITION.toLocaleString("en-US")}` : condition.toFixed(1);
+}

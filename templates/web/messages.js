@@ -7,8 +7,8 @@ import { LongList } from "./list.js";
 import { findSteps } from "./sent.js";
 
 const ROW = 24;
-/** Of a party, as in the style sheet; narrow where one pane is shown at a time. */
-const COLUMN = matchMedia("(max-width: 900px), (orientation: portrait) and (max-width: 1100px)").matches ? 58 : 84;
+/** How wide the column of a party may be, and how much of the pane all of them: what the messages say is to be seen. */
+const COLUMN = { least: 14, most: 84, all: 0.5 };
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -30,6 +30,8 @@ export class Messages {
     findSteps(this.messages, clock.course, this.steps);
     const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
     host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));
+    /** Of a party; it follows from the width of the pane. */
+    this.column = COLUMN.most;
     this.list = new LongList(host, {
       label: "Messages", count: this.messages.length, height: ROW, row: (i) => this.row(i),
       onRow: (i) => {
@@ -38,13 +40,27 @@ export class Messages {
         this.list.go(i);
       },
     });
+    new ResizeObserver(() => this.fit(host)).observe(host);
+  }
+
+  /**
+   * Columns as narrow as the pane wants them.
+   * @param {HTMLElement} host
+   */
+  fit(host) {
+    const room = Math.floor((host.clientWidth * COLUMN.all) / Math.max(this.parties.length, 1));
+    const column = Math.min(Math.max(room, COLUMN.least), COLUMN.most);
+    host.style.setProperty("--party", `${column}px`);
+    if (column === this.column || !host.clientWidth) return;
+    this.column = column;
+    this.list.paint();
   }
 
   /** @param {number} i */
   row(i) {
     const m = this.messages[i];
-    const width = this.parties.length * COLUMN;
-    const x = (/** @type {number} */ party) => (party + 0.5) * COLUMN;
+    const width = this.parties.length * this.column;
+    const x = (/** @type {number} */ party) => (party + 0.5) * this.column;
     const [a, b] = [x(m.from), x(m.to)];
     const way = b > a ? 1 : -1;
     const drawing = svg("svg", { width, height: ROW, class: "arrow", "aria-hidden": "true" });

@@ -33,7 +33,7 @@ export function chipOf({ verdict, course, clock }) {
   const kind = isBad ? "bad" : clock === "seconds" ? "good" : "plain";
   // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
   const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-  const text = places ? `${word} in ${places}` : word;
+  const text = hasFailed(verdict) ? `failure: ${places || word}` : places ? `${word} in ${places}` : word;
   const why = (verdict.failed ?? []).filter((/** @type {string} */ x) => !verdict.final.includes(x));
   return el("span", { class: `chip ${kind}`, text, title: [verdict.reason, ...why].filter(Boolean).join("; ") });
 }

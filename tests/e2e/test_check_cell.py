@@ -64,8 +64,8 @@ MISTAKES = {
         changed(NET, f"    {GO_HOME}\n", f"    {GO_HOME}\n      out Waiting : ()\n"),
         "", "robot-not-sequential", "puts tokens on 2 places"),
     "what the language lacks": (
-        changed(NET, "action moveJoint p", "action moveJoint (at (length [1, 2]))"), "",
-        "unsupported-robot-expression", "list"),
+        changed(NET, "action moveJoint p", "action moveJoint (at (floor (Math.sin 1.0)))"), "",
+        "unsupported-robot-expression", "`Math.sin` cannot be used in a robot script"),
     "a pose out of reach": (
         changed(NET, "action moveHome ()", "action moveJoint (at 90)"), "",
         "robot-reach", "a constant pose cannot be reached: robot `robot1`: the pose is out of reach"),

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from helpers.browser import Page, launched, opened
+from helpers.fingers import PHONE
 from helpers.legible import complaints
 from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
@@ -473,6 +474,72 @@ def test_a_gap_is_shown_as_long_as_it_is_there(tmp_path: Path, chromium: Any) ->
         for t, distances in moments.items():
             found = browser.ask("(t) => replay.page.cell.gaps.at(t).map((g) => g.distance)", t)
             assert found == pytest.approx(distances, abs=1e-6), t
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (390, 844)])
+def test_what_messages_say_is_seen_beside_many_programs(
+    tmp_path: Path, chromium: Any, size: tuple[int, int]
+) -> None:
+    """The columns of the programs are as narrow as they must be, and an arrow ends below the name of its program."""
+    shown = with_arm(described(tmp_path, PAIR))
+    shown["happenings"]["parties"] += [
+        {"name": f"robot number {k}", "kind": "robot"} for k in range(3, 8)
+    ]
+    for m in shown["happenings"]["messages"]:
+        m["from"] = 6
+    file = tmp_path / "replay.html"
+    file.write_text(page(shown), encoding="utf-8")
+    with opened(chromium, viewport={"width": size[0], "height": size[1]}) as browser:
+        browser.open(file)
+        if size[0] < size[1]:
+            browser.page.get_by_role("button", name="More").click()
+        browser.wait("document.querySelector('.panel.messages .said')")
+        room, name, begins = browser.ask("""() => {
+            const box = (what) => document.querySelector(`.panel.messages ${what}`).getBoundingClientRect();
+            const panel = box(".long"), said = box(".said");
+            const last = document.querySelectorAll(".panel.messages .party")[6].getBoundingClientRect();
+            const line = box(".message .line");
+            return [panel.right - Math.max(said.left, panel.left), (last.left + last.right) / 2, line.right];
+        }""")
+        assert room > 120
+        assert abs(begins - name) < 3
+        assert browser.errors == []
+
+
+def test_an_arm_in_a_singularity_has_no_number(tmp_path: Path, chromium: Any) -> None:
+    """How large the condition number is there is rounding: it is no number to be read."""
+    shown = with_arm(described(tmp_path, PAIR))
+    curve = {"kind": "condition", "of": "arm", "unit": "", "limit": 50.0}
+    values = packed_reals([8645777688063115264.0, 8645777688063115264.0, 7.25])
+    shown["happenings"]["curves"] = [
+        {**curve, "t": packed_reals([0.0, 1.0, 2.0], double=True), "v": values}
+    ]
+    file = tmp_path / "replay.html"
+    file.write_text(page(shown), encoding="utf-8")
+    for options in ({}, PHONE):
+        with opened(chromium, **options) as browser:
+            browser.open(file)
+            if options:
+                browser.page.get_by_role("button", name="Cell", exact=True).click()
+            arm = browser.page.locator("#cell .status .arm").first
+            for t, says in ((0.5, "conditioning above 1,000,000"), (2.0, "conditioning 7.3")):
+                browser.ask("t => replay.seek(t)", t)
+                assert " ".join(arm.inner_text().split()).endswith(f"· {says}")
+                assert arm.evaluate("(e) => e.scrollWidth <= e.clientWidth"), "it is cut off"
+            assert browser.errors == []
+
+
+def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium: Any) -> None:
+    shown = with_arm(described(tmp_path, PAIR))
+    final = ["Top.Robot has stopped after a fault"]
+    shown["verdict"] = {"word": "finished", "reason": "", "final": final, "failed": final}
+    with opened(chromium, **PHONE) as browser:
+        browser.open(written(tmp_path, shown))
+        chip, search = (
+            browser.page.locator(f"#top {which}").bounding_box() for which in (".chip", "#search")
+        )
+        assert chip["height"] < 30 and search["width"] >= 60
+        assert browser.ask("() => document.documentElement.scrollWidth") <= 390
 
 
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:

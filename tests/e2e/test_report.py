@@ -153,6 +153,11 @@ def test_elements_lead_to_their_drawing_and_lines_and_these_lead_back(minimal: P
 
 def test_in_the_dark_on_a_phone_and_on_paper(minimal: Path) -> None:
     seen = "document.querySelector('#e0').checkVisibility({ contentVisibilityAuto: true })"
+    torn = """() => [...document.querySelectorAll("td.answer, thead th")].filter((cell) => {
+        const range = document.createRange();
+        range.selectNodeContents(cell);
+        return range.getClientRects().length > cell.textContent.trim().split(/\\s+/).length;
+    }).length"""
     with launched() as browser, opened(browser, **PHONE) as shown:
         for name in ("index.html", "programs.html"):
             for scheme in ("light", "dark"):
@@ -160,6 +165,7 @@ def test_in_the_dark_on_a_phone_and_on_paper(minimal: Path) -> None:
                 shown.page.goto((minimal / name).as_uri())
                 assert complaints(shown) == [], (name, scheme)
             assert shown.ask("() => document.documentElement.scrollWidth") <= 390
+            assert shown.ask(torn) == 0, "an answer is broken within a word"
         shown.page.goto((minimal / "index.html").as_uri())
         shown.wait(f"!{seen}")
         shown.page.emulate_media(media="print")

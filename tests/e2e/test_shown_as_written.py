@@ -87,7 +87,7 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
             [list(steps), list(moments), nothing, list(addresses)],
         )
         chip = browser.page.locator("#verdict .chip.bad")
-        assert chip.inner_text() == "finished in Jammed"
+        assert chip.inner_text() == "failure: Jammed"
         assert browser.errors == []
     assert found.pop("speeds") == pytest.approx([0.1, 50])
     assert found == {

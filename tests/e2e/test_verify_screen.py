@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -164,6 +165,23 @@ def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
     assert any(line.startswith(others) for line in lines)
     assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as they should be."
     assert [path.name for path in here.iterdir()] == ["mutex.traces"]
+
+
+def test_failures_come_before_premises(tmp_path: Path, here: Path) -> None:
+    """Where there is no room for both, what the other answers rest on is only counted."""
+    cell = write(tmp_path / "cell", NET)
+    asked = [("--property", f"never tokens(Pieces) <= {n}") for n in range(1, 7)]
+    few, many = (verify(cell, *(w for x in asked[:k] for w in x)) for k in (1, 6))
+    assert few[0] == many[0] == 1
+    told = [sum(line.startswith("NO property") for line in lines) for _, lines, _ in (few, many)]
+    assert told[0] == 1
+    assert told[1] >= 3
+    assert any(line.startswith("Assumed: nobody owes") for line in few[1])
+    assert any(
+        re.fullmatch(r"Assumed: \d+ premises of the answers above; `--full` has them\.", line)
+        for line in many[1]
+    )
+    assert all(len(lines) <= MOST_LINES for _, lines, _ in (few, many))
 
 
 def test_where_the_reasons_are_of_what_is_not_known(tmp_path: Path, here: Path) -> None:

@@ -8,6 +8,7 @@ with listening(line.say):               # whoever shows how a command goes on
     ...
 for t in counted(transitions, "translating transitions"):    # in a loop deep inside, which knows nothing of a line
     ...
+beginning("solving 2,000 equations")    # before a call that lets no other thread run, so that nobody can count seconds
 """
 
 from __future__ import annotations
@@ -100,3 +101,12 @@ def counted(items: Collection[T], what: str) -> Iterator[T]:
     for item in items:
         yield item
         more()
+
+
+def beginning(what: str) -> None:
+    """Whoever listens is told what begins: a call of a library during which no thread runs that could count seconds.
+
+    Args:
+        what: is done, and how large it is.
+    """
+    _LISTENER.get()(f"{what} ...")

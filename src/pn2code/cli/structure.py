@@ -49,7 +49,10 @@ def structure(
         opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
         with told("looking at the structure") as line:
             analysis = analyse(opened.flat, storage=opened.storage, stage=line.turn_to)
-    if as_json:
-        typer.echo(json.dumps(report.as_json(analysis), indent=1))
-    else:
-        typer.echo(report.text(analysis, everything=everything))
+            line.turn_to("writing what was found")
+            said = (
+                json.dumps(report.as_json(analysis), indent=1)
+                if as_json
+                else report.text(analysis, everything=everything)
+            )
+    typer.echo(said)

@@ -205,20 +205,28 @@ def screen(said: Said) -> str:
         partial = f"PARTIAL: {outcome.header(said.net, said.found, said.counts)}"
         lines += [*textwrap.wrap(partial, _WIDTH), ""]
     lines += _sizes(said)
-    lines += _as_it_runs(said)
+    remarks = list(_as_it_runs(said))
     items = tuple(_items(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
-    if items:
-        lines += ["", *_counts(said), *_premises(said)]
-    lines += _durations(said)
+    counts = ["", *_counts(said)] if items else []
+    premises, timed = list(_premises(said)), list(_durations(said))
     end = ["", *textwrap.wrap(_MORE, _WIDTH)]
     for note in said.notes:
         end += textwrap.wrap(f"{_NOTE}{note}", _WIDTH, subsequent_indent="  ")
     end += textwrap.wrap(closing(said), _WIDTH)
+    has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
+    kept = LEAST_WAY + 1 if has_run else 0
+    room = MOST_LINES - len(lines) - len(counts) - len(timed) - len(end) - 1 - kept
+    if any(i.kind == "bad" for i in wrong):
+        # What failed comes before what the other answers rest on, and before remarks.
+        needed = len(_wrong(wrong, MOST_LINES))
+        if needed > room - len(premises) - len(remarks):
+            premises = list(_counted_premises(said))
+        if needed > room - len(premises) - len(remarks):
+            remarks = list(_counted_remarks(said))
+    room -= len(premises) + len(remarks)
+    lines += [*remarks, *counts, *premises, *timed]
     if wrong:
-        has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
-        kept = LEAST_WAY + 1 if has_run else 0
-        room = MOST_LINES - len(lines) - len(end) - 1 - kept
         lines += ["", *_wrong(wrong, room)]
     room = MOST_LINES - len(lines) - len(end) - 1
     path = _path_lines(said, wrong, room)
@@ -335,6 +343,18 @@ def _as_it_runs(said: Said) -> Iterator[str]:
         yield from _row("Dead in both", _listed(both, len(said.net.transitions)))
 
 
+def _counted_remarks(said: Said) -> Iterator[str]:
+    """In place of them, where there is no room."""
+    count = 0 if said.control is None else len([*control_text.differences(said.control)])
+    if count:
+        does = "differs" if count == 1 else "differ"
+        yield ""
+        yield (
+            f"In the cell as it runs {_count_of(count, 'size')} {does} from the closed net's (no failure; `--full` "
+            "says which)."
+        )
+
+
 def _dead(found: Exploration) -> str:
     if not found.dead_count:
         return "none" if found.seen.markings else "none was seen"
@@ -426,14 +446,25 @@ def _counts(said: Said) -> Iterator[str]:
             )
 
 
-def _premises(said: Said) -> Iterator[str]:
+def _assumed(said: Said) -> list[str]:
     """What answers rest on that no state shows."""
     checks = said.control.checks if said.control else ()
-    found = dict.fromkeys(
-        [*(x for c in checks for x in c.assumes), *(x for a in said.answers for x in a.assumes)]
-    )
-    if found:
+    return [
+        *dict.fromkeys(
+            [*(x for c in checks for x in c.assumes), *(x for a in said.answers for x in a.assumes)]
+        )
+    ]
+
+
+def _premises(said: Said) -> Iterator[str]:
+    if found := _assumed(said):
         yield from textwrap.wrap(f"Assumed: {'; '.join(found)}.", _WIDTH, subsequent_indent="  ")
+
+
+def _counted_premises(said: Said) -> Iterator[str]:
+    """In place of them, where there is no room."""
+    if found := _assumed(said):
+        yield f"Assumed: {_count_of(len(found), 'premise')} of the answers above; `--full` has them."
 
 
 def _count(kinds: Sequence[str]) -> str:

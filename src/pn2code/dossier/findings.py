@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
 from pn2code.dossier.geometry import Table, answered, tables
 from pn2code.dossier.steps import Done
@@ -254,7 +255,7 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     others = [x for x in said.get("failed") or () if x not in (said.get("final") or ())]
     why = f"(a failure: {'; '.join(others)})" if others else ""
     text = " ".join(x for x in (ended, places and f"in {places}", why, said["reason"]) if x)
-    found = [Finding("end", YES if is_good else NO, text)]
+    found = [Finding("end of the run", YES if is_good else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [
@@ -262,7 +263,11 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
         for name, row in _rows(said, "clearances")
     ]
     found += [
-        Finding(f"worst conditioning, {name}", NOTED, f"{row['worst']:.1f} at {row['t']:.2f} s")
+        Finding(
+            f"worst conditioning, {name}",
+            NOTED,
+            f"{condition_text(row['worst'], 1)} at {row['t']:.2f} s",
+        )
         for name, row in _rows(said, "conditioning")
     ]
     found += [

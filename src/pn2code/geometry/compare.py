@@ -19,6 +19,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from pn2code.base.conditioning import MOST_CONDITION
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity
 from pn2code.geometry.ahead import Ahead
@@ -36,7 +37,6 @@ from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Clearance
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.executor import turned_by
-from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
 from pn2code.robot.riders import riding

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pn2code.robot.kinematics import condition_text
+from pn2code.base.conditioning import condition_text
 from pn2code.run.record import APART
 
 Json = dict[str, Any]

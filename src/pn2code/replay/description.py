@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.conditioning import condition_text
 from pn2code.base.os_reason import os_reason
 
 Json = dict[str, Any]
@@ -126,7 +127,7 @@ def facts(summary: Mapping[str, Any]) -> list[list[str]]:
         for name, entry in summary["clearances"].items()
     ]
     rows += [
-        [f"worst condition number, {name}", f"{entry['worst']:.1f}"]
+        [f"worst condition number, {name}", condition_text(entry["worst"], 1)]
         for name, entry in summary["conditioning"].items()
     ]
     rows += [

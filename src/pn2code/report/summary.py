@@ -12,9 +12,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from pn2code.base.conditioning import condition_text
 from pn2code.cell.config import ReportConfig
 from pn2code.report.activities import activities, busy_seconds
-from pn2code.robot.kinematics import condition_text
 from pn2code.run.command_words import KINDS
 from pn2code.run.record import RunRecord, merged_rows, summary_counts
 

@@ -70,17 +70,6 @@ class Conditioning:
     wrist: float
 
 
-MOST_CONDITION = 1e6
-"""A larger condition number is rounding: the arm is in a singularity."""
-
-
-def condition_text(condition: float, digits: int = 0) -> str:
-    """For people; of an arm in a singularity it has no meaning how large the number is."""
-    if condition > MOST_CONDITION:
-        return f"above {MOST_CONDITION:,.0f}"
-    return f"{condition:.{digits}f}"
-
-
 _SEVEN = (
     "of arms with seven axes those are known whose axes 1, 2 and 3 meet in the shoulder and 5, 6 and 7 in the wrist, "
     "with axis 4 between them"

@@ -17,9 +17,10 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
-from pn2code.robot.kinematics import Branch, Kinematics, condition_text
+from pn2code.robot.kinematics import Branch, Kinematics
 from pn2code.robot.straight import Leap, Straight
 from pn2code.robot.transforms import (
     Array,

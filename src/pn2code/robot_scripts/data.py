@@ -195,6 +195,7 @@ class Data:
                     origin,
                 )
             ],
+            hint=problem.hint,
         )
 
     def messages(self, place: int, steps: Sequence[Step]) -> dict[int, Value]:

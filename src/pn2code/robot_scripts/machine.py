@@ -424,6 +424,8 @@ class _Analyser:
                     self.error(
                         t,
                         f"transition `{t.short}` puts tokens on {len(targets)} places: {names(targets)}",
+                        hint="if one of them is a value that the program keeps, let it hold a token from the start, "
+                        "which transitions replace; if one is a message, it needs a [[channel]]",
                     )
                     return
         for s in steps:
@@ -446,7 +448,7 @@ class _Analyser:
             f"the places of {self.owner.phrase} are not those of a sequential program",
         )
 
-    def error(self, t: FlatTransition, message: str) -> None:
+    def error(self, t: FlatTransition, message: str, hint: str = "") -> None:
         self.d.error(
             codes.NOT_SEQUENTIAL,
             message,
@@ -455,6 +457,7 @@ class _Analyser:
                 "a robot script is one thread of control: every transition moves one token among the places that "
                 "tell where the program is; other places hold exactly one token (variables) or are channels"
             ],
+            hint=hint,
         )
 
     def begins_at_once(self, control: list[int]) -> bool:

@@ -582,6 +582,8 @@ class StepTranslator:
                     "goes, has no time stamps",
                     transition.delay.span,
                     codes.UNSUPPORTED_TIME,
+                    f"give `{flat.short}` a timed colour set, such as "
+                    f"`colset {flat.colset.name}_TIMED = {flat.colset.name} timed;`",
                 )
             return []
         own = [] if transition.delay is None else [transition.delay]

@@ -25,13 +25,24 @@ POSE_LABELS = tuple(tdl.POSE_FIELDS)
 
 
 class UnsupportedError(Exception):
-    """An expression that scripts do not have; caught where the transition is translated."""
+    """An expression that scripts do not have; caught where the transition is translated.
 
-    def __init__(self, message: str, span: Span, code: str = codes.UNSUPPORTED_EXPRESSION) -> None:
+    Args:
+        hint: what to do about it.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        span: Span,
+        code: str = codes.UNSUPPORTED_EXPRESSION,
+        hint: str = "",
+    ) -> None:
         super().__init__(message)
         self.message = message
         self.span = span
         self.code = code
+        self.hint = hint
 
 
 # --- shapes: what a type or colour set is made of ----------------------------------------------

@@ -21,6 +21,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from pn2code import pipeline
+from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.base.os_reason import os_reason
@@ -42,7 +43,6 @@ from pn2code.robot import scene
 from pn2code.robot.backend import Backend, BackendName
 from pn2code.robot.choose_backend import expect_backend, open_backend
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.kinematics import condition_text
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor

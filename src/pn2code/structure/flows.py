@@ -19,7 +19,7 @@ from math import gcd
 from typing import Any
 
 from pn2code.base.frozen import frozen, record
-from pn2code.base.how_far import counted, counting
+from pn2code.base.how_far import beginning, counted, counting
 
 Row = Mapping[int, int]
 Vector = dict[int, int]
@@ -387,6 +387,9 @@ def is_sub_invariant(rows: Sequence[Row], vector: Mapping[int, int]) -> bool:
 
 # --- all integer invariants ----------------------------------------------------------------------
 
+_LONG = 200_000
+"""Entries of a dense matrix from which on the library takes long enough to be announced: no thread runs meanwhile."""
+
 
 def basis(rows: Sequence[Row], limits: Limits | None = None) -> tuple[Vector, ...] | None:
     """A basis of all integer invariants: each is an integer combination of these. None: the matrix is too large."""
@@ -407,6 +410,8 @@ def basis(rows: Sequence[Row], limits: Limits | None = None) -> tuple[Vector, ..
         for c, n in rows[i].items():
             if n:
                 dense[position[c]][k] = n
+    if len(others) * len(names) >= _LONG:
+        beginning(f"solving for all invariants at once: {len(names):,} by {len(others):,}")
     kernel, dimension = flint.fmpz_mat(dense).nullspace()
     if dimension:
         columns = [[int(kernel[r, c]) for r in range(len(others))] for c in range(dimension)]
@@ -431,6 +436,8 @@ def _lattice(vectors: list[list[int]]) -> list[list[int]]:
         # B^T = W R (Hermite form, R square): the integer vectors of the span are spanned by R^-T B.
         b = flint.fmpz_mat(vectors)
         k = len(vectors)
+        if k * b.ncols() >= _LONG:
+            beginning(f"solving for whole numbers: {k:,} by {b.ncols():,}")
         hermite = b.transpose().hnf()
         square = flint.fmpz_mat([[int(hermite[i, j]) for j in range(k)] for i in range(k)])
         solved = flint.fmpq_mat(square.transpose()).solve(flint.fmpq_mat(b))

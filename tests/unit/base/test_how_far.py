@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.base.how_far import HowFar
+from pn2code.base.how_far import HowFar, beginning, listening
 
 
 def counted(times: list[float], total: int) -> list[str]:
@@ -34,3 +34,11 @@ def test_where_nobody_knows_them_it_says_the_rate() -> None:
 
 def test_more_than_were_announced_leave_nothing() -> None:
     assert counted([0.0, 1.0, 2.0], 1) == ["sweeping: 2 of 1, 1.0 a second, about 0 s left"]
+
+
+def test_what_lets_nobody_count_is_told_before_it_begins() -> None:
+    said: list[str] = []
+    with listening(said.append):
+        beginning("solving 2,000 equations")
+    beginning("nobody listens")
+    assert said == ["solving 2,000 equations ..."]

@@ -135,6 +135,16 @@ def test_an_exploration_without_a_limit_says_once_that_there_is_none(stream: io.
     assert said.count("`--max-seconds S`") == said.count("`--reduce time`") == 1
 
 
+def test_when_all_states_are_known_nothing_waits() -> None:
+    stream = Terminal()
+    with exploration.ProgressLine(stream=stream) as line:
+        line.update({"phase": "explore", "states": 7, "arcs": 9, "rate": 3.0, "frontier": 2})
+        assert "3 states/s  2 waiting" in stream.getvalue()
+        line.update({"phase": "graph", "states": 7, "arcs": 9, "seconds": 5.0})
+    last = stream.getvalue().split("\x1b[K")[-2]
+    assert last.startswith("arcs: 7 states  9 arcs  0 MiB  5 s")
+
+
 def test_an_exploration_with_a_limit_does_not() -> None:
     stream = io.StringIO()
     with exploration.ProgressLine(stream=stream) as line:

@@ -72,7 +72,7 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
         "final": ["Cell.Supervisor.Failed"],
         "cycle_seconds": 7.0,
         "clearances": {"robots": {"m": 0.0123, "t": 1.5}},
-        "conditioning": {"r": {"worst": 102.1, "t": 2.0}},
+        "conditioning": {"r": {"worst": 102.1, "t": 2.0}, "s": {"worst": 8.6e18, "t": 3.0}},
         "warnings": [{"t": 2.0, "robot": "r", "text": "comes close to a singularity"}],
     }
     (tmp_path / "x/summary.json").write_text(json.dumps(said))
@@ -82,12 +82,14 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
         (YES, "finished in Cell.Supervisor.Failed"),
         (NOTED, "12.3 mm at 1.50 s"),
         (NOTED, "102.1 at 2.00 s"),
+        (NOTED, "above 1,000,000 at 3.00 s"),
         (NOTED, "r comes close to a singularity"),
     ]
     failed = {**said, "failed": said["final"]}
     (tmp_path / "x/summary.json").write_text(json.dumps(failed))
     c = chapter(tmp_path, "run", None)
     assert (c.answer, c.findings[0].says) == (NO, "finished in Cell.Supervisor.Failed")
+    assert c.findings[0].about == "end of the run"
     (tmp_path / "x/summary.json").write_text(json.dumps({**said, "verdict": "stopped"}))
     assert chapter(tmp_path, "run", None, 1).answer == NO
 

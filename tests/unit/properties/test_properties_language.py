@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -401,3 +402,13 @@ def test_members_of_a_fusion_set_are_one_place(tmp_path: Path) -> None:
     one = asked(found, "bound Alarm <= 1")
     for path in ("Top'Alarm", '"Fusion.Alarms"', '"Top.Alarm"', '"Top.Left.Alarm"'):
         assert asked(found, f"bound {path} <= 1") == one
+
+
+def test_the_examples_that_play_shows_are_properties(examined: front.Examined, root: Path) -> None:
+    page = (root / "templates/web/asking.js").read_text(encoding="utf-8")
+    examples = re.findall(r'"(.+)",', page.split("const EXAMPLES = [")[1].split("];")[0])
+    assert len(examples) == 4
+    for text in examples:
+        for name, own in (("Place", "Stock"), ("Transition", "Sell"), ("Other", "Wait")):
+            text = text.replace(f"Page'{name}", f"Top'{own}")
+        assert asked(examined, text)

@@ -769,6 +769,26 @@ def test_what_is_no_sequential_program_is_refused_with_its_reason(
     assert all(x.origin.line for x in cell.d.errors)
 
 
+def test_a_delay_without_stamps_says_which_colour_set_has_them(tmp_path: Path) -> None:
+    """And what it proposes is accepted."""
+    robot = "place A = 1\nplace B : INT\ntrans T delay @+3\n  in A\n  in x : n\n  out B : n"
+    robot += "\ntrans U\n  in B : n\n  out A\n  out y : n"
+    channels = ("x in INT", "y out INT")
+    [error] = Cell(tmp_path, robot, channels).d.errors
+    assert error.hint == "give `B` a timed colour set, such as `colset INT_TIMED = INT timed;`"
+    told, extra = robot.replace("B : INT", "B : INT_TIMED"), "colset INT_TIMED = INT timed;"
+    assert "wait 3 s" in Cell(tmp_path, told, channels, extra=extra).text
+
+
+def test_a_value_that_is_put_beside_the_position_says_what_a_variable_is(tmp_path: Path) -> None:
+    robot = "place A = 1\nplace B\nplace C : INT\ntrans T\n  in A\n  out B\n  out C : 0"
+    robot += "\ntrans U\n  in B\n  in C : n\n  out A"
+    [error] = Cell(tmp_path, robot).d.errors
+    assert error.hint.startswith("if one of them is a value that the program keeps, let it hold a")
+    told = robot.replace("C : INT", "C : INT = 1`0").replace("out C : 0", "in C : n\n  out C : 0")
+    assert Cell(tmp_path, told.replace("in C : n\n  out A", "both C : n\n  out A")).ir is not None
+
+
 @pytest.mark.parametrize("marking", ["1`1 @ 0", "1 @ 0", "1`1 @ ~3"])
 def test_a_stamp_that_is_not_after_the_start_changes_nothing(tmp_path: Path, marking: str) -> None:
     robot = "place A : TINT = {}\ntrans T\n  in A : n\n  out A : n + 1"

@@ -9,6 +9,7 @@ from math import gcd
 import flint
 import pytest
 
+from pn2code.base.how_far import listening
 from pn2code.structure.flows import (
     Limits,
     Program,
@@ -170,3 +171,14 @@ def test_sub_invariants_by_linear_programs() -> None:
     assert program.invariant(2) is None
     assert not is_sub_invariant(rows, {2: 1})
     assert not is_sub_invariant(rows, {0: -1})
+
+
+def test_a_long_solution_is_told_before_it_begins() -> None:
+    """The library lets no other thread run, so nobody could say meanwhile that it goes on."""
+    said: list[str] = []
+    with listening(said.append):
+        basis([{i: -1, (i + 1) % 40: 1} for i in range(40)])
+        assert said == []
+        found = basis([{i: -1, (i + 1) % 500: 1} for i in range(500)])
+    assert said == ["solving for all invariants at once: 500 by 500 ..."]
+    assert found == (dict.fromkeys(range(500), 1),)

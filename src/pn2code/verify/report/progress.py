@@ -49,12 +49,16 @@ class ProgressLine(Line):
     def update(self, said: Mapping[str, Any]) -> None:
         """What the explorer says of itself, twice a second."""
         phase = _PHASES.get(said.get("phase", ""), str(said.get("phase", "")))
-        parts = [
-            f"{said.get('states', 0):,} states",
-            f"{said.get('arcs', 0):,} arcs",
+        going_on = [
             f"{said.get('rate', 0):,.0f} states/s",
             f"{said.get('frontier', 0):,} waiting",
             f"depth {said.get('depth', 0):,}",
+        ]
+        parts = [
+            f"{said.get('states', 0):,} states",
+            f"{said.get('arcs', 0):,} arcs",
+            # All states are known in what comes after.
+            *(going_on if said.get("phase", "explore") == "explore" else ()),
             f"{said.get('mib', 0):,.0f} MiB",
             f"{said.get('seconds', 0):.0f} s",
         ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pn2code.robot.kinematics import condition_text
+from pn2code.base.conditioning import condition_text
 
 
 @pytest.mark.parametrize(
