@@ -48,6 +48,7 @@ from pn2code.cell_file.logic import (
     LED,
     NET,
     PRIMITIVE,
+    REGISTER,
     REPORT,
     SENSOR,
     STORED,
@@ -395,7 +396,12 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
         kind = r.choice(table, at, CHANNEL["kind"], "flag")
         _once(r, files, file, place, at, "channels")
         yield ChannelConfig(
-            place, file, ChannelKind(kind), r.at(*at, "place"), is_kind_given="kind" in table
+            place,
+            file,
+            ChannelKind.DATA if kind == REGISTER else ChannelKind(kind),
+            r.at(*at, "place"),
+            is_kind_given="kind" in table,
+            is_register=kind == REGISTER,
         )
 
 

@@ -33,7 +33,7 @@ def told(
         return says, (
             f"in the net a token there is for one of its readers, whoever takes it first; if all are to have it, {EACH}"
         )
-    setting = {i for i in writers | readers if not _only_looks(net, place, owners[i])}
+    setting = {i for i in writers | readers if not only_looks(net, place, owners[i])}
     looking = (writers | readers) - setting
     if len(setting) != 1 or not looking:
         return None
@@ -48,7 +48,7 @@ def _names(owners: Sequence[Owner], which: Iterable[int]) -> str:
     return ", ".join(f"`{owners[i].name}`" for i in sorted(which))
 
 
-def _only_looks(net: FlatNet, place: int, owner: Owner) -> bool:
+def only_looks(net: FlatNet, place: int, owner: Owner) -> bool:
     """Whether all that an owner does with a place is to look at its token, or to put back what it has taken."""
     own = (t for t in net.transitions if f"{t.instance}/".startswith(f"{owner.instance}/"))
     return all(_leaves(t, place) for t in own)
