@@ -36,6 +36,8 @@ from pn2code.net.uses import NetVariables
 
 REGISTER = "register-"
 """What the ids of elements begin with that are added for registers."""
+LOOK = f"{REGISTER}look-"
+"""The same of transitions that look whether there is a new value, before anything else is done."""
 PAGE = "Medium"
 """The page that the new places and transitions are on."""
 
@@ -295,6 +297,11 @@ class Builder:
                 )
             inscription = ArcInscription(arc.value, arc.form, found or (), origin)
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
+
+
+def looks(t: FlatTransition) -> bool:
+    """Whether a transition looks at a register, see `LOOK`."""
+    return t.id.startswith(LOOK)
 
 
 def _unused(name: str, taken: Container[str], form: str = "{}{}") -> str:

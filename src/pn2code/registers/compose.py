@@ -34,7 +34,7 @@ from pn2code.cell.scalars import message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.net.builder import REGISTER, Arc, Builder
+from pn2code.net.builder import LOOK, REGISTER, Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition
 from pn2code.robot_scripts.machine import analyse, initial_tokens, tokens
 
@@ -63,6 +63,7 @@ class _Made:
     instance: str
     number: int
     origin: Origin
+    is_look: bool = False
 
 
 def with_messages(
@@ -335,7 +336,7 @@ class _Composer:
             here = f"{place.short} in {control.short}"
             takes = b.take(value, b.pair(new, any_of_them))
             begins = [b.take(state, x), b.put(looking, x), takes, *own]
-            self._step(reader, f"See {here}", soon, begins, place)
+            self._step(reader, f"See {here}", soon, begins, place, is_look=True)
             takes = b.take(value, b.pair(new, newer))
             again = [b.take(looking, x), b.put(looking, x), takes, *own]
             self._step(reader, f"See again {here}", soon, again, place)
@@ -374,9 +375,16 @@ class _Composer:
         return index
 
     def _step(
-        self, owner: int, short: str, priority: int, arcs: Sequence[Arc], of: FlatPlace
+        self,
+        owner: int,
+        short: str,
+        priority: int,
+        arcs: Sequence[Arc],
+        of: FlatPlace,
+        *,
+        is_look: bool = False,
     ) -> None:
-        made = self._at(owner, short, of.origins[0])
+        made = replace(self._at(owner, short, of.origins[0]), is_look=is_look)
         path = f"{made.instance.replace('/', '.')}.{short}"
         self.b.transition(path, arcs, priority=priority)
         self.transitions.append(made)
@@ -394,7 +402,7 @@ class _Composer:
                     page=made.page,
                     instance=made.instance,
                     instance_number=made.number,
-                    id=f"{REGISTER}transition-{t.index}",
+                    id=f"{LOOK if made.is_look else REGISTER}{t.index}",
                     origin=made.origin,
                 )
                 for t, made in zip(net.transitions[count:], self.transitions, strict=True)
@@ -407,7 +415,7 @@ class _Composer:
                 page=self.places[p.index].page,
                 instance=self.places[p.index].instance,
                 instance_number=self.places[p.index].number,
-                id=f"{REGISTER}place-{p.index}",
+                id=f"{REGISTER}{p.index}p",
                 origins=(self.places[p.index].origin,),
             )
             if p.index in self.places
