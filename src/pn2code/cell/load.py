@@ -688,7 +688,7 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
     at: KeyPath = ("report",)
     r.keys(table, at, REPORT.names())
     rows = tuple(name for name, _ in r.texts(table, at, REPORT["rows"]))
-    known = [c.place for c in config.channels]
+    known = [c.place for c in config.channels if not c.is_register]
     for name in rows:
         if name not in known:
             r.d.error(

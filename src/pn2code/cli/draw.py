@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code import registers
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import told
 from pn2code.base.whole_file import whole_file
 from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
-from pn2code import registers
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code import registers
 from pn2code.base.os_reason import os_reason
 from pn2code.base.writable import why_file_unwritable
-from pn2code import registers
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate

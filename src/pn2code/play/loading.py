@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from pn2code.base.frozen import frozen
 from pn2code import registers
+from pn2code.base.frozen import frozen
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.ml.elaborate import Elaborator

@@ -28,7 +28,7 @@ from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.divide import divide
 from pn2code.cell.looked_at import only_looks
 from pn2code.cell.owners import owners_of, owners_of_transitions
-from pn2code.cell.partition import ChannelKind, Owner, OwnerKind, Partition
+from pn2code.cell.partition import ChannelKind, Owner, Partition
 from pn2code.cell.place_finder import PlaceFinder
 from pn2code.cell.scalars import message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
@@ -66,9 +66,7 @@ class _Made:
     is_look: bool = False
 
 
-def with_messages(
-    net: FlatNet, config: CellConfig, d: Diagnostics
-) -> tuple[FlatNet, CellConfig]:
+def with_messages(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[FlatNet, CellConfig]:
     """The net and the cell with registers made of messages; as they are after an error."""
     entries = [c for c in config.channels if c.is_register]
     before = len(d.errors)
@@ -125,13 +123,23 @@ def _register(
     readers = sorted(users - {SUPERVISOR})
     others = [owners[i].phrase for i in setters if i != SUPERVISOR]
     if others:
-        _refuse(d, place, entry, f"is changed by {', '.join(others)}, but only the supervisor sets registers")
+        _refuse(
+            d,
+            place,
+            entry,
+            f"is changed by {', '.join(others)}, but only the supervisor sets registers",
+        )
     elif not setters:
         _refuse(d, place, entry, "is set by no transition of the supervisor")
     if not readers:
         _refuse(d, place, entry, "is read by no robot or device")
     if place.colset.timed:
-        _refuse(d, place, entry, f"has the timed colour set `{place.colset.name}`, and values carry no time stamps")
+        _refuse(
+            d,
+            place,
+            entry,
+            f"has the timed colour set `{place.colset.name}`, and values carry no time stamps",
+        )
     elif message_scalars(place.colset) is None:
         _refuse(d, place, entry, f"has colour set `{place.colset.name}`, which no message can hold")
     elif not _is_one_initially(net, place):
@@ -247,7 +255,7 @@ class _Composer:
                 self.b.old[t] = replace(self.b.old[t], arcs=arcs)
 
     def _looks(self, plain: CellConfig) -> dict[tuple[int, int], list[int]] | None:
-        """For each register and reader the control places of the states in which the reader looks; None after errors."""
+        """For each register and reader the control places of states in which it looks; None after errors."""
         tried = Diagnostics()
         before = len(tried.errors)
         partition = divide(self._placed(self.b.net()), plain, tried)
@@ -427,7 +435,13 @@ class _Composer:
             if i.place in self.places:
                 p = places[i.place]
                 i = replace(
-                    i, id=p.id, name=p.short, caption=p.short, page=p.page, instance=p.instance, number=p.instance_number
+                    i,
+                    id=p.id,
+                    name=p.short,
+                    caption=p.short,
+                    page=p.page,
+                    instance=p.instance,
+                    number=p.instance_number,
                 )
             for (place, reader), copy in self.copies.items():
                 owner = self.owners[reader].instance

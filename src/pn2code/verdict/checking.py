@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pn2code import registers
 from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
-from pn2code import registers
 from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics, Severity

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pn2code.base.frozen import frozen
 from pn2code import registers
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
