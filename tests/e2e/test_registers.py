@@ -38,7 +38,7 @@ def test_what_is_true_at_once_is_false_where_it_is_seen_late(tmp_path: Path) -> 
     said = verified(cell, never_again)
     (answer,) = said["properties"]
     assert answer["answer"] == "no" and answer["net"]["answer"] == "yes", answer
-    replayed(Path(answer["evidence"][0]["trace"]), cell)
+    replayed(Path(answer["evidence"]["trace"]), cell)
     # Once the value has been published, each device sees it the next time that it looks.
     assert {c["answer"] for c in said["controller"]} == {"yes"}
     assert {c["answer"] for c in said["medium"]} == {"yes"}
@@ -75,7 +75,7 @@ def test_the_programs_are_those_of_the_net(tmp_path: Path) -> None:
     assert found is not None and found.complete and not found.deviates, found
 
 
-@pytest.mark.parametrize("seed", [3, 4, 9])
+@pytest.mark.parametrize("seed", [3, 8])
 def test_random_cells_are_verified_and_run(seed: int, tmp_path: Path) -> None:
     cell = tmp_path / "cell"
     holds = register_cells.write(cell, seed)

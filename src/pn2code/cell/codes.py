@@ -111,8 +111,8 @@ CHANNEL_DIRECTION = register(
     "a channel needs exactly one writer and one reader",
     "A place that two owners share becomes a file: one owner puts tokens (output arcs only), the other takes them "
     "(input arcs only). Test arcs (both directions), inhibitor and reset arcs, or a third owner would need a lock that "
-    "shared files do not have. For a value that several owners read, give each reader a channel of its own, into which "
-    "the writer puts it, and a place of its own that keeps it (docs/cookbook.md).",
+    "shared files do not have. A value that the supervisor sets and that others look at can be a register "
+    '(`kind = "register"`, docs/cookbook.md, `A value that several read`).',
 )
 REGISTER = register(
     "register",

@@ -1,7 +1,7 @@
 """Places that several owners read: what the net says with them, and what a cell can have instead.
 
 A token that one of several takes is for one of them only. A token that one owner replaces, and that others put back as
-they found it, is a value that many read. Neither is a channel (docs/adr/015-values-that-many-read.md).
+they found it, is a value that many read: no channel, but a register if the supervisor sets it (`registers`).
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from collections.abc import Iterable, Sequence
 from pn2code.cell.partition import Owner
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 
-EACH = (
-    "give each reader a channel of its own, and let the transitions that write put a token into each of them "
-    "(docs/cookbook.md, `A value that several read`)"
+SUPERVISOR = 0
+AS_REGISTER = (
+    'write `kind = "register"` into its table (docs/cookbook.md, `A value that several read`)'
 )
+EACH = "give each reader a channel of its own, and let the transitions that write put a token into each of them"
 
 
 def told(
@@ -41,7 +42,12 @@ def told(
         f"is set by {_names(owners, setting)} and looked at by {_names(owners, looking)}: a value that stays there "
         "cannot be a message, which is taken"
     )
-    return says, f"{EACH}; a reader takes it into a place of its own, and looks there"
+    if setting == {SUPERVISOR}:
+        return says, AS_REGISTER
+    return says, (
+        f"{EACH}; a reader takes it into a place of its own, and looks there. What the supervisor sets can be a "
+        "register (docs/cookbook.md, `A value that several read`)"
+    )
 
 
 def _names(owners: Sequence[Owner], which: Iterable[int]) -> str:

@@ -26,6 +26,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.divide import divide
+from pn2code.cell.files import faults, one_name
 from pn2code.cell.looked_at import only_looks
 from pn2code.cell.owners import owners_of, owners_of_transitions
 from pn2code.cell.partition import ChannelKind, Owner, Partition
@@ -237,6 +238,8 @@ class _Composer:
         for register in self.found:
             for reader in register.readers:
                 self._messages(register, reader, looks[register.place.index, reader])
+        if not self._are_files_apart():
+            return self.net, self.config
         return self._placed(self.b.net()), replace(self.config, channels=tuple(self.entries))
 
     def _copy(self, register: _Register, reader: int) -> None:
@@ -351,6 +354,29 @@ class _Composer:
             takes = b.take(value, b.pair(new, latest))
             goes = [b.take(looking, x), b.put(state, x), takes, b.put(taken, b.dot)]
             self._step(reader, f"Go on {here}", soon, goes, place)
+
+    def _are_files_apart(self) -> bool:
+        """Whether the files of the messages have names that are possible, and that nothing else has."""
+        before = len(self.d.errors)
+        statuses = {one_name(f"{o.name}.status") for o in self.owners}
+        seen: dict[str, str] = {}
+        for entry in self.entries:
+            stem = one_name(PurePath(entry.file).stem)
+            why = [f"cannot be made: {text}" for text, _ in faults(entry.file)]
+            if stem in seen:
+                why.append(f"has the name of another channel, `{seen[stem]}`")
+            if one_name(entry.file) in statuses:
+                why.append("is the status file of a program")
+            seen.setdefault(stem, entry.file)
+            for text in why[:1]:
+                self.d.error(
+                    codes.REGISTER,
+                    f"the file `{entry.file}` {text}",
+                    entry.origin,
+                    hint="the files of a register are named by its `file` and its readers, `FILE_READER` and "
+                    "`FILE_READER_taken`: give it or the other channel another file",
+                )
+        return len(self.d.errors) == before
 
     # --- elements --------------------------------------------------------------------------------
 

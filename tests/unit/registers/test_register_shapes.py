@@ -142,3 +142,26 @@ def test_an_input_or_a_second_entry(tmp_path: Path) -> None:
     toml.write_text(said + '[[channel]]\nplace = "limit"\nfile = "other.txt"\nkind = "register"\n')
     _, _, d = composed(folder)
     assert [e.message for e in d.errors] == ["register `Top.limit` has two entries"]
+
+
+def test_files_that_are_taken(tmp_path: Path) -> None:
+    folder = register_pairs.write(tmp_path, register_pairs.TOLD)
+    toml = folder / "cell.toml"
+    said = toml.read_text()
+    toml.write_text(said.replace('"go1.robcad"', '"Limit_first.txt"'))
+    _, _, d = composed(folder)
+    assert [e.message for e in d.errors] == [
+        "the file `limit_first.robcad` has the name of another channel, `Limit_first.txt`"
+    ]
+    toml.write_text(said.replace('"limit.robcad"', f'"{"l" * 150}.robcad"'))
+    _, _, d = composed(folder)
+    assert any("it has more than 160 bytes" in e.message for e in d.errors), d.errors
+
+
+def test_a_page_that_is_no_program(tmp_path: Path) -> None:
+    text = register_pairs.text(register_pairs.TOLD).replace(
+        "    in Idle : ()\n    in go", "    in go"
+    )
+    folder = register_pairs.written(tmp_path, text, register_pairs.FLAGS[register_pairs.TOLD])
+    _, _, d = composed(folder)
+    assert {e.code for e in d.errors} == {"robot-not-sequential"}, d.errors
