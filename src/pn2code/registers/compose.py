@@ -285,8 +285,7 @@ class _Composer:
             if copy is None:
                 continue
             if copy not in machine.variables:
-                _refuse(self.d, register.place, register.entry, f"tells where {owner.phrase} is")
-                d.items += self.d.errors[-1:]
+                _refuse(d, register.place, register.entry, f"tells where {owner.phrase} is")
             states = {
                 p
                 for s in machine.steps

@@ -453,7 +453,7 @@ class _Composer:
 
     def _after_looks(self, t: FlatTransition, owner: int) -> Iterator[Arc]:
         """More arcs of a transition: its script has looked before it does anything else, and looks anew after it."""
-        if owner not in self.machines:
+        if owner not in self.machines or not self.passed:
             return
         for control in self.machines[owner].control:
             if any(s.transition.index == t.index for s in self.machines[owner].steps_from(control)):
