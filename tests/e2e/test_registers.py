@@ -13,6 +13,7 @@ from helpers import register_cells, register_pairs
 from pn2code.cli.main import app
 from pn2code.conform.cell import conform_cell
 from pn2code.diagnostics import Diagnostics
+from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, run_cell
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
@@ -73,6 +74,27 @@ def test_the_programs_are_those_of_the_net(tmp_path: Path) -> None:
     cell = register_pairs.write(tmp_path / "cell", register_pairs.FREE)
     found = conform_cell(cell, Diagnostics())
     assert found is not None and found.complete and not found.deviates, found
+
+
+def test_a_script_that_does_not_look_first_is_found(tmp_path: Path) -> None:
+    cell = register_pairs.write(tmp_path / "cell", register_pairs.FREE)
+    d = Diagnostics()
+    made = generate(cell, d)
+    assert made is not None, [str(i) for i in d]
+    folder = tmp_path / "made"
+    for file in made.files:
+        path = folder / file.path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(file.text, encoding="utf-8")
+    script = folder / "first.tdl"
+    text = script.read_text()
+    asks = "if filled(limit_first) then"
+    assert asks in text
+    script.write_text(text.replace(asks, asks.replace(" then", " and limit_seen > 9 then"), 1))
+    found = conform_cell(cell, d, generated=folder)
+    assert found is not None and found.deviates
+    (deviation,) = [r.deviation for r in found.robots if r.deviation]
+    assert "`Top.First.Enter` with {'k': 1}, which is not enabled according to the net" in deviation
 
 
 @pytest.mark.parametrize("seed", [3, 8])
