@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pn2code
+from pn2code import registers
 from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
@@ -117,6 +118,9 @@ def generate(
     examined = front.examine(net_path, d, replaced, int_bits=int_bits, compute=compute)
     net, typed = examined.flat, examined.typed
     _refuse_unsupported(d, net)
+    if net is None or d.has_errors:
+        return None
+    net, config = registers.as_messages(net, config, d)
     if net is None or d.has_errors:
         return None
     partition = divided(net, config, d, kept=kept)

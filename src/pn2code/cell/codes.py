@@ -111,8 +111,16 @@ CHANNEL_DIRECTION = register(
     "a channel needs exactly one writer and one reader",
     "A place that two owners share becomes a file: one owner puts tokens (output arcs only), the other takes them "
     "(input arcs only). Test arcs (both directions), inhibitor and reset arcs, or a third owner would need a lock that "
-    "shared files do not have. For a value that several owners read, give each reader a channel of its own, into which "
-    "the writer puts it, and a place of its own that keeps it (docs/cookbook.md).",
+    "shared files do not have. A value that the supervisor sets and that others look at can be a register "
+    '(`kind = "register"`, docs/cookbook.md, `A value that several read`).',
+)
+REGISTER = register(
+    "register",
+    "a place is no register",
+    "A `[[channel]]` of kind `register` is a value that the supervisor sets and that robots and devices look at. Its "
+    "place holds exactly one token from the start. Each transition of the supervisor that uses it takes this token and "
+    "puts one; each of a robot or device puts back what it has taken, or looks with a test arc. Nothing else may use "
+    "the place: no inhibitor or reset arc, no time stamps, no input file (docs/protocol.md, Registers).",
 )
 CHANNEL_UNDECLARED = register(
     "channel-undeclared",

@@ -93,6 +93,8 @@ class ChannelConfig:
     kind: ChannelKind
     origin: Origin
     is_kind_given: bool = True
+    is_register: bool = False
+    """a value that others look at (`registers`), and no channel yet"""
 
 
 @frozen

@@ -69,11 +69,12 @@ def check_files(config: CellConfig, d: Diagnostics) -> None:
 
 
 def _one(name: str, at: Origin, d: Diagnostics) -> None:
-    for text, hint in _faults(name):
+    for text, hint in faults(name):
         d.error(codes.CELL_VALUE, f"`{name}` cannot be the name of a file: {text}", at, hint=hint)
 
 
-def _faults(name: str) -> Iterator[tuple[str, str]]:
+def faults(name: str) -> Iterator[tuple[str, str]]:
+    """What is wrong with the name of a file, and what to do."""
     if not all(c.isprintable() for c in name):
         yield "it has characters that cannot be printed", "use letters, digits, `_`, `-` and `.`"
     if len(name.encode("utf-8", "surrogatepass")) > MOST_BYTES:

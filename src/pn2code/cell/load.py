@@ -48,6 +48,7 @@ from pn2code.cell_file.logic import (
     LED,
     NET,
     PRIMITIVE,
+    REGISTER,
     REPORT,
     SENSOR,
     STORED,
@@ -395,7 +396,12 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
         kind = r.choice(table, at, CHANNEL["kind"], "flag")
         _once(r, files, file, place, at, "channels")
         yield ChannelConfig(
-            place, file, ChannelKind(kind), r.at(*at, "place"), is_kind_given="kind" in table
+            place,
+            file,
+            ChannelKind.DATA if kind == REGISTER else ChannelKind(kind),
+            r.at(*at, "place"),
+            is_kind_given="kind" in table,
+            is_register=kind == REGISTER,
         )
 
 
@@ -682,7 +688,7 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
     at: KeyPath = ("report",)
     r.keys(table, at, REPORT.names())
     rows = tuple(name for name, _ in r.texts(table, at, REPORT["rows"]))
-    known = [c.place for c in config.channels]
+    known = [c.place for c in config.channels if not c.is_register]
     for name in rows:
         if name not in known:
             r.d.error(

@@ -1,7 +1,7 @@
 """Places that several owners read: what the net says with them, and what a cell can have instead.
 
 A token that one of several takes is for one of them only. A token that one owner replaces, and that others put back as
-they found it, is a value that many read. Neither is a channel (docs/adr/015-values-that-many-read.md).
+they found it, is a value that many read: no channel, but a register if the supervisor sets it (`registers`).
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from collections.abc import Iterable, Sequence
 from pn2code.cell.partition import Owner
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 
-EACH = (
-    "give each reader a channel of its own, and let the transitions that write put a token into each of them "
-    "(docs/cookbook.md, `A value that several read`)"
+SUPERVISOR = 0
+AS_REGISTER = (
+    'write `kind = "register"` into its table (docs/cookbook.md, `A value that several read`)'
 )
+EACH = "give each reader a channel of its own, and let the transitions that write put a token into each of them"
 
 
 def told(
@@ -33,7 +34,7 @@ def told(
         return says, (
             f"in the net a token there is for one of its readers, whoever takes it first; if all are to have it, {EACH}"
         )
-    setting = {i for i in writers | readers if not _only_looks(net, place, owners[i])}
+    setting = {i for i in writers | readers if not only_looks(net, place, owners[i])}
     looking = (writers | readers) - setting
     if len(setting) != 1 or not looking:
         return None
@@ -41,14 +42,19 @@ def told(
         f"is set by {_names(owners, setting)} and looked at by {_names(owners, looking)}: a value that stays there "
         "cannot be a message, which is taken"
     )
-    return says, f"{EACH}; a reader takes it into a place of its own, and looks there"
+    if setting == {SUPERVISOR}:
+        return says, AS_REGISTER
+    return says, (
+        f"{EACH}; a reader takes it into a place of its own, and looks there. What the supervisor sets can be a "
+        "register (docs/cookbook.md, `A value that several read`)"
+    )
 
 
 def _names(owners: Sequence[Owner], which: Iterable[int]) -> str:
     return ", ".join(f"`{owners[i].name}`" for i in sorted(which))
 
 
-def _only_looks(net: FlatNet, place: int, owner: Owner) -> bool:
+def only_looks(net: FlatNet, place: int, owner: Owner) -> bool:
     """Whether all that an owner does with a place is to look at its token, or to put back what it has taken."""
     own = (t for t in net.transitions if f"{t.instance}/".startswith(f"{owner.instance}/"))
     return all(_leaves(t, place) for t in own)

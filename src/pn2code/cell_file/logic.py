@@ -98,6 +98,7 @@ INPUT = Section(
         ),
     )
 )
+REGISTER = "register"
 CHANNEL = Section(
     (
         Key(
@@ -121,8 +122,10 @@ CHANNEL = Section(
             '`"data"` is written before `"flag"`. A program that receives a flag of the supervisor owes it an '
             "answer (I8), so a message that is never answered should be data. Without the key a token of one scalar "
             "is a flag, of several, or of a list, data. `check` prints a table of all channels, with what decided "
-            "their kind.",
-            words=("data", "flag"),
+            'their kind. A `"register"` is a value that the supervisor sets and that robots and devices look at '
+            "([protocol.md](protocol.md#registers)); its `file` gives the names of the files, two for each "
+            "reader.",
+            words=("data", "flag", REGISTER),
         ),
     )
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code import registers
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import told
 from pn2code.base.whole_file import whole_file
@@ -121,6 +122,8 @@ def draw(
     values = {**(config.values if config else {}), **parse_values(settings)}
     with told("reading the net"):
         examined = front.examine(path, d, values, drawn=True, compute=compute)
+        if not d.has_errors:
+            examined, config = registers.examined(examined, config, d)
     document = examined.document
     if document is None or not document.pages:
         stop(d, form)

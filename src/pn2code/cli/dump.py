@@ -60,6 +60,7 @@ def stage_text(
     path: Path, stage: Stage, only: str, values: dict[str, str], d: Diagnostics
 ) -> str | None:
     """The dump; None after diagnostics."""
+    from pn2code import registers
     from pn2code.cell.dump import dump_partition
     from pn2code.cell.locate import locate
     from pn2code.division import divided
@@ -87,7 +88,9 @@ def stage_text(
         linked = link(document, d)
         return None if linked is None else dump_net(linked)
     flat = front.load(net_path, d, {**(config.values if config else {}), **values}, compute=compute)
-    if flat is None:
+    if flat is not None and not d.has_errors:
+        flat, config = registers.as_messages(flat, config, d)
+    if flat is None or d.has_errors:
         return None
     if stage is Stage.DECLARATIONS:
         return dump_program(flat.program)

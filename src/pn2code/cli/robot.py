@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code import registers
 from pn2code.base.os_reason import os_reason
 from pn2code.base.writable import why_file_unwritable
 from pn2code.cell.codes import CELL_MISSING
@@ -195,6 +196,8 @@ def _in_cell(
         known = ", ".join(f"`{r.name}`" for r in config.programs)
         _usage(f"the cell has no robot `{name}`; choose one of {known} with --name")
     flat = front.load(path, d, config.values, compute=compute)
+    flat, config = registers.as_messages(flat, config, d)
+    assert config is not None, "it was there"
     partition = divide(flat, config, d) if flat is not None else None
     loaded = scene.load(config.geometry, config.folder, config.locator.origin, d)
     if partition is None or loaded is None or d.has_errors:

@@ -179,6 +179,7 @@ def _trace(
     form: Format,
 ) -> Json:
     """A trace and its net."""
+    from pn2code import registers
     from pn2code.cell.final_places import failed_names
     from pn2code.cell.locate import locate
     from pn2code.cli.nets import playing
@@ -203,6 +204,8 @@ def _trace(
     path, config = found
     replaced = {**(config.values if config else {}), **values}
     examined = front.examine(path, d, replaced, drawn=True, compute=compute)
+    if not d.has_errors:
+        examined, config = registers.examined(examined, config, d)
     if examined.flat is None or examined.document is None or d.has_errors:
         stop(d, form)
     storage = config.storage if config else {}

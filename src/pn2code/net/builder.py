@@ -16,8 +16,9 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml.core import types
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Lit, RecordExp, Symbol, Var
+from pn2code.ml.core.terms import Apply, Builtin, Con, Exp, If, Lit, RecordExp, Symbol, Var
 from pn2code.ml.elaborate import Elaborator
+from pn2code.ml.library.datatypes import DATATYPES
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.flat import (
     ArcInscription,
@@ -33,6 +34,10 @@ from pn2code.net.flat import (
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables
 
+REGISTER = "register-"
+"""What the ids of elements begin with that are added for registers."""
+LOOK = f"{REGISTER}look-"
+"""The same of transitions that look whether there is a new value, before anything else is done."""
 PAGE = "Medium"
 """The page that the new places and transitions are on."""
 
@@ -101,6 +106,16 @@ class Builder:
             self._made[name, colset.name] = symbol
             self._variables[shown] = symbol
         return Var(symbol, symbol.type, self._span(symbol.name))
+
+    def truth_values(self, name: str) -> Colset:
+        """A new colour set of truth values."""
+        return self._colset(Colset(name, Kind.BOOL, types.BOOL, names=("false", "true")))
+
+    def truth(self, value: bool) -> Exp:
+        """`true` or `false`."""
+        name = "true" if value else "false"
+        constructor = next(c for c, _ in DATATYPES["bool"].constructors if c.name == name)
+        return Con(constructor, types.BOOL, self._span(name))
 
     def number(self, n: int) -> Exp:
         """A constant."""
@@ -282,6 +297,11 @@ class Builder:
                 )
             inscription = ArcInscription(arc.value, arc.form, found or (), origin)
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
+
+
+def looks(t: FlatTransition) -> bool:
+    """Whether a transition looks at a register, see `LOOK`."""
+    return t.id.startswith(LOOK)
 
 
 def _unused(name: str, taken: Container[str], form: str = "{}{}") -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from pn2code import registers
 from pn2code.base.frozen import frozen
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostic, Diagnostics
@@ -70,6 +71,9 @@ def load(
     monitors: MonitorProgram | None = None
     if examined.flat is not None and not d.has_errors:
         emptiness.warn(examined.flat, d)
+        examined, config = registers.examined(examined, config, d)
+        if examined.flat is None or d.has_errors:
+            return None
         opened = with_inputs(OpenNet(examined.flat, config, examined), d, inputs)
         if d.has_errors:  # of the input files: the net itself is right
             return None

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 
 from pn2code.diagnostics import Note
+from pn2code.net.builder import REGISTER
 from pn2code.net.flat import FlatTransition
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts.conditions import all_hold
@@ -91,8 +92,10 @@ class States:
         return situations if len(situations) == len(steps) else None
 
     def _warn_of_choices(self, situations: list[Situation]) -> None:
-        for i, a in enumerate(situations):
-            for b in situations[i + 1 :]:
+        # To look at a register before anything else is what its reader is to do (`registers`).
+        asked = [s for s in situations if not s.step.transition.id.startswith(REGISTER)]
+        for i, a in enumerate(asked):
+            for b in asked[i + 1 :]:
                 # Conditions on different messages say nothing about each other.
                 both = set(a.channels) & set(b.channels)
                 if not self._exclude(self._known(a, both)[0], self._known(b, both)[0]):

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pn2code import registers
 from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.channel_table import ChannelRow, rows
@@ -74,6 +75,9 @@ def check(
         emptiness.warn(result.flat, d)
     channels: tuple[ChannelRow, ...] = ()
     if config is not None:
+        if not d.has_errors:
+            result, config = registers.examined(result, config, d)
+            assert config is not None, "it was found above"
         partition = examine_cell(file, config, result, d, inputs=inputs, kept=kept)
         if partition is not None:
             channels = rows(partition, config)

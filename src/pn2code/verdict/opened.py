@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from pn2code import registers
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
@@ -74,6 +75,9 @@ def read(
     if examined.flat is None or d.has_errors:
         return None
     emptiness.warn(examined.flat, d)
+    examined, config = registers.examined(examined, config, d)
+    if examined.flat is None or d.has_errors:
+        return None
     return OpenNet(examined.flat, config, examined)
 
 

@@ -19,6 +19,7 @@ from pn2code.division import divided
 from pn2code.net.front import examine
 from pn2code.net.front import load as load_net
 from pn2code.properties.sources import bind, from_cell
+from pn2code.registers import as_messages
 from pn2code.robot import scene
 from pn2code.robot_scripts.translate import lower_robots
 from pn2code.semantics.evaluation.constants import compute
@@ -100,8 +101,10 @@ def test_the_table_is_read(recipe: Recipe, tmp_path: Path) -> None:
         net = examined.flat
         assert net is not None and examined.typed is not None
         if config.channels:
-            partition = divided(net, config, d)
+            composed, cell = as_messages(net, config, d)
+            assert composed is not None and cell is not None, render.report(d)
+            partition = divided(composed, cell, d)
             assert partition is not None, render.report(d)
-            assert lower_robots(partition, config, d) is not None, render.report(d)
+            assert lower_robots(partition, cell, d) is not None, render.report(d)
         bind(properties, net, examined.typed.elaborator, d)
         assert not d.items, render.report(d)

@@ -52,8 +52,8 @@ REPLACES = "      in value : n\n      out value : n + 1"
 EACH = "give each reader a channel of its own"
 
 
-def refused(folder: Path, setter: str, reader: str) -> Diagnostic:
-    text = NET.replace("SETTER", setter).replace("READER", reader)
+def refused(folder: Path, setter: str, reader: str, net: str = NET) -> Diagnostic:
+    text = net.replace("SETTER", setter).replace("READER", reader)
     text = text.replace("INITIAL", " = 1`0")
     small_cell.write(folder, text, TOML)
     d = Diagnostics()
@@ -70,7 +70,16 @@ def test_a_value_that_stays(reader: str, tmp_path: Path) -> None:
     found = refused(tmp_path, REPLACES, reader)
     said = "channel `Top.value` is set by `supervisor` and looked at by `one`, `two`: a value that"
     assert found.message.startswith(said)
-    assert EACH in found.hint and "a place of its own, and looks there" in found.hint
+    assert found.hint.startswith('write `kind = "register"` into its table')
+
+
+def test_a_value_that_a_device_sets(tmp_path: Path) -> None:
+    text = NET.replace("subst Two = Reader", "subst Two = Sup")
+    found = refused(
+        tmp_path, "      both value : n", "      in value : k\n      out value : k + 1", text
+    )
+    assert "is set by `one` and looked at by `supervisor`, `two`" in found.message
+    assert EACH in found.hint and "What the supervisor sets can be a register" in found.hint
 
 
 def test_a_token_for_one_of_several(tmp_path: Path) -> None:

@@ -18,6 +18,9 @@ taken. Added are flags of which others know nothing:
   little later, unless one reader gets two messages of one kind (`NotModelledError`). Only where a transition writes to
   several readers, or somebody acts on data without the flag that is written after them, its messages are *out* one
   after the other: who has the first one may act before the next is written.
+* A script that looks at a register (`registers`) asks for its message before anything else when it has come to a state.
+  So it does anything else there only after a step *passes*, which finds no message. One that comes after this step may
+  be seen or not.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
 * Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
@@ -43,7 +46,7 @@ from pn2code.base.frozen import frozen
 from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.ml.core import terms as core
-from pn2code.net.builder import Arc, Builder
+from pn2code.net.builder import Arc, Builder, looks
 from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
 from pn2code.trace.parties import EVIDENCE, VERIFY
@@ -340,6 +343,7 @@ class _Composer:
             self.going = b.place("cell.robots.go on", b.unit)
             b.begin(self.going, b.dot)
         self.machines = {i: machine(partition, i) for i in range(1, len(partition.owners))}
+        self.passed = dict(self._passed())
         self.owes = dict(self._owing())
         self.late = [c for c in looked if self._may_be_late(c)]
         self.reads = b.place("cell.supervisor.reads", b.unit) if self.late else self.calm
@@ -355,6 +359,7 @@ class _Composer:
         self._writing()
         self._reading()
         for owner in range(1, len(partition.owners)):
+            self._passing(owner)
             self._stopping(owner)
         if partition.net.timed:
             self._time()
@@ -421,7 +426,54 @@ class _Composer:
         arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
         if not self.is_loose:
             arcs.append(self.b.absent(self.stopped))
+        arcs += self._after_looks(t, owner)
         self.b.add_arcs(t.index, arcs, {})
+
+    def _passed(self) -> Iterator[tuple[int, int]]:
+        """By transition that looks at a register: a place that is marked once its script has found no message.
+
+        Where the control token waits for time, a script may be seen to do so: there nothing is said.
+        """
+        for owner, program in self.machines.items():
+            for step in program.steps:
+                places = [p for p, *_ in step.takes]
+                is_timed = any(self.b.places[p].colset.timed for p in places)
+                if looks(step.transition) and not is_timed:
+                    name = f"{self.partition.owners[owner].name}.{step.transition.short}"
+                    yield step.transition.index, self.b.place(f"cell.{name}.passed", self.b.unit)
+
+    def _looks_from(self, owner: int, control: int) -> list[tuple[FlatTransition, int]]:
+        """The transitions that look at registers in a state, each with the place that says that it has no message."""
+        steps = self.machines[owner].steps_from(control)
+        return [
+            (s.transition, self.passed[s.transition.index])
+            for s in steps
+            if s.transition.index in self.passed
+        ]
+
+    def _after_looks(self, t: FlatTransition, owner: int) -> Iterator[Arc]:
+        """More arcs of a transition: its script has looked before it does anything else, and looks anew after it."""
+        if owner not in self.machines or not self.passed:
+            return
+        for control in self.machines[owner].control:
+            if any(s.transition.index == t.index for s in self.machines[owner].steps_from(control)):
+                for look, passed in self._looks_from(owner, control):
+                    is_later = (t.priority, t.index) > (look.priority, look.index)
+                    yield self._off(passed) if is_later else self.b.empties(passed)
+
+    def _passing(self, owner: int) -> None:
+        """A script that has come to a state in which it looks at a register finds no message there."""
+        for control in self.machines[owner].control:
+            for look, passed in self._looks_from(owner, control):
+                (message,) = (p for p in self._taken(look) if p in self.out)
+                arcs = [self._any(control), self._is_missing(message), self.b.absent(passed)]
+                name = f"{self.partition.owners[owner].name} passes {look.short}"
+                arcs += [self._on(passed), *self._goes_on()]
+                self._step(owner, name, look.priority, *arcs)
+
+    @staticmethod
+    def _taken(t: FlatTransition) -> list[int]:
+        return [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
 
     def _owing(self) -> Iterator[tuple[int, int]]:
         """By robot that gets flags: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
