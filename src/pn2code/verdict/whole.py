@@ -140,9 +140,11 @@ class Said:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is no failure, and to be said beside a yes: transitions that never occur."""
+        """What is no failure, and to be said: of the closed net in CPN Tools; beside a yes what never occurs."""
+        apart = outcome.closed_net(self.net, self.found)
         found = never(self.net, self.found, self.control) if self.verdict == "yes" else None
-        return (found.sentence,) if found is not None and found.transitions else ()
+        seldom = (found.sentence,) if found is not None and found.transitions else ()
+        return (*seldom, *((apart,) if apart else ()))
 
     def row(self) -> dict[str, Any]:
         """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""
