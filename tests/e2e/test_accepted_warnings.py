@@ -124,6 +124,8 @@ def test_exactly_what_is_named_is_accepted() -> None:
         (("a", "c"), False),
         (("a", "b", "c"), False),
         (("Q'a", "b"), False),
+        (("b", "b"), False),
+        (("a", "P'a"), False),
         ((), False),
     ):
         assert Rule("robot-choice", names, "r", at[0]).accepts(item) == is_so

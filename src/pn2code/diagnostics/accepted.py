@@ -38,10 +38,15 @@ class Rule:
         """Whether it is about this warning."""
         if item.severity is not Severity.WARNING or item.code != self.code:
             return False
-        about = [{name, name.partition("'")[2] or name} for name in elements(item)]
-        return len(about) == len(self.elements) and all(
-            any(own in names for names in about) for own in self.elements
-        )
+        left = list(elements(item))
+        if len(left) != len(self.elements):
+            return False
+        for own in sorted(self.elements, key=lambda own: own not in left):  # whole names first
+            found = next((x for x in left if own in (x, x.partition("'")[2])), None)
+            if found is None:
+                return False
+            left.remove(found)
+        return True
 
 
 def elements(item: Diagnostic) -> tuple[str, ...]:
