@@ -1,4 +1,4 @@
-"""Of a cell whose closed net CPN Tools may ask in another order: the programs are answered for, the net is told apart."""
+"""Where CPN Tools may ask the closed net of a cell in another order: the programs are answered for, the net apart."""
 
 from __future__ import annotations
 
