@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from helpers.small_cell import NET, write
+from helpers.small_cell import NET, TOML, write
 from pn2code.cli.main import app
 
 pytestmark = pytest.mark.cc
@@ -29,11 +29,21 @@ LOOK = """
     trans Next"""
 
 
-def verified(folder: Path, guard: str, tokens: str) -> tuple[int, dict[str, Any], str, str]:
+OF_NET = """
+[[property]]
+name = "of the net"
+holds = "bound Moving <= 3"
+about = "net"
+"""
+
+
+def verified(
+    folder: Path, guard: str, tokens: str, toml: str = TOML
+) -> tuple[int, dict[str, Any], str, str]:
     """The cell with a list in the supervisor that a transition looks at."""
     net = NET.replace("  page Top\n", LIST, 1).replace("    trans Next", LOOK % guard, 1)
     net = net.replace("    place Moving : INT\n", f"    place Moving : INT\n{HELD % tokens}", 1)
-    path = write(folder, net)
+    path = write(folder, net, toml)
     words = ["verify", str(path), "--no-medium", "-o", str(folder / "runs")]
     words += ["--property", "bound Moving <= 3"]
     done = CliRunner().invoke(app, [*words, "--json"])
@@ -67,3 +77,12 @@ def test_where_no_order_raises_anything_the_last_line_says_so(tmp_path: Path) ->
     assert code == 0 and row["other_orders"]["harmless"] and "other-order" not in err
     assert "Verdict: YES." in text and "Of the closed net" not in text
     assert "In every order in which CPN Tools may ask conditions none of them raises" in text
+
+
+@pytest.mark.usefixtures("quick_build")
+def test_what_is_asked_of_the_net_is_not_known(tmp_path: Path) -> None:
+    code, row, text, _ = verified(tmp_path, "length l > 0, m = hd l", "[]", TOML + OF_NET)
+    found = {p["name"]: (p["about"], p["answer"]) for p in row["properties"]}
+    assert found.pop("of the net") == ("net", "inconclusive")
+    assert set(found.values()) == {("cell", "yes")}
+    assert code == 3 and "Verdict: NOT KNOWN. 1 of 10 answers is not known." in text

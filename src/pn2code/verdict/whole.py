@@ -33,7 +33,7 @@ from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import Exploration, OtherOrders
 from pn2code.verify.exploring.result import row as exploration_row
 from pn2code.verify.report.never_text import never
 
@@ -269,13 +269,8 @@ def conclude(
     answers = properties.answered(
         asked, opened, found, looked.more, folder, stem(opened), limits.deadline, d, control
     )
-    if outcome.may_stop(found):  # a run that shows something may be longer than what CPN Tools does
-        answers = tuple(
-            replace(a, answer="inconclusive", why=clause("order"), evidence=None)
-            if kind(a) == "good" or (found.orders is not None and found.orders.more)
-            else a
-            for a in answers
-        )
+    if found.orders is not None and found.orders.why:
+        answers = tuple(_in_other_orders(a, found.orders) for a in answers)
     other_orders.tell(opened, found, d)
     if outcome.has_raised(found):
         _tell_error(opened, found, d)
@@ -294,6 +289,17 @@ def conclude(
         limits.deadline,
         opened.config,
     )
+
+
+def _in_other_orders(a: Answer, orders: OtherOrders) -> Answer:
+    """An answer where CPN Tools may stop: a run that shows something may be longer than what it does."""
+    if not a.cell:
+        is_open = kind(a) == "good" or orders.more
+        why = clause("order")
+        return replace(a, answer="inconclusive", why=why, evidence=None) if is_open else a
+    of_net = None if a.net is None else replace(a, answer=a.net)
+    is_open = of_net is not None and (kind(of_net) == "good" or orders.more)
+    return replace(a, net="inconclusive", net_why=clause("order")) if is_open else a
 
 
 @contextmanager
