@@ -9,10 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.small_cell import NET, write
+from pn2code.cell.codes import ACCEPT_UNNEEDED
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostic, Note, Origin, Severity
 from pn2code.diagnostics.accepted import Rule, elements
 from pn2code.dossier.findings import _checked
+from pn2code.verify import codes
 
 REACHED = NET.replace(
     "x = 100.0 * Real.fromInt n, y = 0.5, z = 0.0, rx = 0.0, ry = 0.0, rz = 90.0",
@@ -124,7 +126,28 @@ def test_exactly_what_is_named_is_accepted() -> None:
         (("a", "c"), False),
         (("a", "b", "c"), False),
         (("Q'a", "b"), False),
+        (("b", "b"), False),
+        (("a", "P'a"), False),
         ((), False),
     ):
         assert Rule("robot-choice", names, "r", at[0]).accepts(item) == is_so
     assert not Rule("other", ("a", "b"), "r", at[0]).accepts(item)
+
+
+def test_a_key_of_the_cell_is_an_element() -> None:
+    """Else an entry for one sensor would hide what is found out of another one later."""
+    at = Origin("cell.toml", 4, part="key `sensors.door.sees`")
+    item = Diagnostic(Severity.WARNING, "sensor-blind", "m", at)
+    assert elements(item) == ("sensors.door.sees",)
+    assert Rule("sensor-blind", ("sensors.door.sees",), "r", at).accepts(item)
+    assert not Rule("sensor-blind", ("sensors.lid.sees",), "r", at).accepts(item)
+    assert not Rule("sensor-blind", (), "r", at).accepts(item)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [codes.OTHER_ORDER, codes.STATE_ERROR, codes.TIME_OVER, codes.CONTROL_OPEN, ACCEPT_UNNEEDED],
+)
+def test_how_a_verification_has_come_out_is_not_accepted(code: str) -> None:
+    item = Diagnostic(Severity.WARNING, code, "m", Origin("n.cpn"))
+    assert not Rule(code, (), "r", Origin("cell.toml")).accepts(item)

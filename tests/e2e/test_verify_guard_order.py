@@ -105,7 +105,12 @@ def test_what_no_order_raises_is_a_yes(
     tmp_path: Path, guard: str, arcs: str, is_warned: bool
 ) -> None:
     code, row, text = verified(net(tmp_path, guard, arcs, "[3]"))
-    looked = {"harmless": True, "why": "", "raised": None}  # where nothing is warned of, not at all
+    looked = {
+        "harmless": True,
+        "why": "",
+        "raised": None,
+        "of_cell": False,
+    }  # where nothing is warned of, not at all
     assert code == 0 and row["other_orders"] == (looked if is_warned else None)
     assert "Verdict: COMPLETE" in text
     said = "In every order in which CPN Tools may ask conditions none of them raises an exception"

@@ -88,7 +88,7 @@ def test_markings_that_are_not_listed_are_looked_at_again(tmp_path: Path) -> Non
     """More colours than are told of a bound: the greatest is not known."""
     code, row, _ = verified(tmp_path, "n > 5, k * 1000 > 0", LARGE, steps=300)
     assert code == 0
-    assert row["other_orders"] == {"harmless": True, "why": "", "raised": None}
+    assert row["other_orders"] == {"harmless": True, "why": "", "raised": None, "of_cell": False}
 
 
 def test_a_part_of_the_markings_is_looked_at_again(tmp_path: Path) -> None:

@@ -167,4 +167,5 @@ ACCEPT_UNNEEDED = register(
     "cell.toml accepts a warning that there is not",
     "An `[[accept]]` entry is about a warning that `check` gives, with exactly the elements that it names. The code or "
     "a name is misspelt, or what was warned of has been mended: then remove the entry, lest it hide the next one.",
+    is_answer=True,
 )

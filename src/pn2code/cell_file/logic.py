@@ -486,7 +486,7 @@ ACCEPT = Section(
             "elements",
             "texts",
             "What the warning is about: all elements that it and its notes name, as `PAGE'NAME` or by name alone "
-            "(`check --json` lists them). Without the key: one about no element of the net.",
+            "(`check --json` lists them). Of cell.toml its keys. Without the key: one about the whole net.",
             "a list of elements of the net",
         ),
         Key("reason", "text", "Why it is accepted; `report` prints it.", "a text", required=True),

@@ -24,7 +24,7 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis, outcome, why_disabled
-from pn2code.verify.answers.outcome import does, error_text, good_of
+from pn2code.verify.answers.outcome import does, error_text, good_of, may_stop
 from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.answers.waiting import Scripts
@@ -527,7 +527,7 @@ def _path_lines(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     if found.error_trace is not None:
         lines = _last(said, found.error_trace.file, "to the exception", most - 1)
         return [*lines, f"  then {error_text(said.net, found)}"]
-    orders = found.orders.raised if found.orders is not None else None
+    orders = found.orders.raised if found.orders is not None and may_stop(found) else None
     if orders is not None and orders.trace is not None and all(i.kind != "bad" for i in wrong):
         lines = _last(said, orders.trace.file, "to where CPN Tools may stop", most - 1)
         return [

@@ -3,7 +3,8 @@
     rule = Rule("robot-choice", ("Robot1'Put", "Robot1'Take"), "Put is more urgent", origin)
     rule.accepts(item)      # a warning with this code, about exactly these elements
 
-Elements are named as the message names them: `PAGE'NAME`, or the name alone.
+Elements are named as the message names them: `PAGE'NAME`, or the name alone; a key of cell.toml with those around it,
+`sensors.door.sees`. What says how a verification has come out is no such warning.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ import re
 from collections.abc import Iterable, Iterator
 
 from pn2code.base.frozen import frozen
+from pn2code.diagnostics.codes import require_code
 from pn2code.diagnostics.diagnostic import Diagnostic, Severity
 from pn2code.diagnostics.origin import Origin
 
 _NAME = re.compile(r"`([^`]*)`")
+_KEY = "key "
 
 
 @frozen
@@ -36,12 +39,18 @@ class Rule:
 
     def accepts(self, item: Diagnostic) -> bool:
         """Whether it is about this warning."""
-        if item.severity is not Severity.WARNING or item.code != self.code:
+        is_warning = item.severity is Severity.WARNING and not require_code(item.code).is_answer
+        if not is_warning or item.code != self.code:
             return False
-        about = [{name, name.partition("'")[2] or name} for name in elements(item)]
-        return len(about) == len(self.elements) and all(
-            any(own in names for names in about) for own in self.elements
-        )
+        left = list(elements(item))
+        if len(left) != len(self.elements):
+            return False
+        for own in sorted(self.elements, key=lambda own: own not in left):  # whole names first
+            found = next((x for x in left if own in (x, x.partition("'")[2])), None)
+            if found is None:
+                return False
+            left.remove(found)
+        return True
 
 
 def elements(item: Diagnostic) -> tuple[str, ...]:
@@ -56,3 +65,5 @@ def _called(origins: Iterable[Origin]) -> Iterator[str]:
         if words:
             page = f"{at.page}'" if at.page else ""
             yield page + " -> ".join(words)
+        elif at.part.startswith(_KEY):
+            yield at.part.removeprefix(_KEY).replace("`", "")

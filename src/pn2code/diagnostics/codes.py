@@ -11,19 +11,24 @@ from pn2code.base.frozen import frozen
 
 @frozen
 class Code:
-    """A code, a title of a few words, and an explanation of some sentences with an example."""
+    """A code, a title of a few words, and an explanation of some sentences with an example.
+
+    Args:
+        is_answer: whether it says how a verification has come out: then cell.toml cannot accept it.
+    """
 
     code: str
     title: str
     explanation: str
+    is_answer: bool = False
 
 
 _REGISTRY: dict[str, Code] = {}
 
 
-def register(code: str, title: str, explanation: str) -> str:
+def register(code: str, title: str, explanation: str, *, is_answer: bool = False) -> str:
     """Declare a code; returns it. Declaring one twice with other words is a bug."""
-    entry = Code(code, title, explanation)
+    entry = Code(code, title, explanation, is_answer)
     if _REGISTRY.get(code, entry) != entry:
         raise ValueError(f"diagnostic code {code!r} is declared twice")
     _REGISTRY[code] = entry

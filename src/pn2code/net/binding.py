@@ -220,7 +220,9 @@ class Planner:
     def is_evident(self, arcs: Sequence[TakingArc]) -> bool:
         """Whether an order is found whatever the variables are: without a guard, by an arc with one summand."""
         terms = [t for arc in arcs for t in arc.inscription.terms]
-        return len(terms) < 2 and not any(self.variables.seen(t.coefficient) for t in terms)
+        return len(terms) < 2 and not any(
+            self.variables.seen(t.coefficient) or self.variables.seen(t.delay) for t in terms
+        )
 
     def warn_of_shared(self, parts: Parts, kind: str, later: Origin, earlier: Origin) -> None:
         """Of arcs from one place whose variables CPN Tools cannot bring together."""

@@ -18,15 +18,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import combinations
 
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.engine_tables import BrokenError, Group, Leaf, Name, Tables
 
 MOST = 20_000
 """Markings that are looked at; where there are more, an order is taken to exist."""
-MOST_KEYS = 6
-"""Components by whose subsets tokens are found; of more, all but the first ones are taken together."""
 
 
 class StuckError(Exception):
@@ -57,6 +54,30 @@ class _Step:
         return not self.gives & ~self.needs
 
 
+@dataclass(frozen=True)
+class _Lookup:
+    """A summand whose tokens are found by their known components; `keys`: the components that may be known.
+
+    Instead of a step for each subset of these: one that can be taken gives no name that has a value already, so that
+    it is found by all components that are known.
+    """
+
+    needs: int
+    keys: tuple[int, ...]
+    has_constant: bool
+    gives: int
+
+    def after(self, marking: int) -> int | None:
+        """The marking that it leads to; None: it cannot be taken."""
+        known = [k for k in self.keys if not k & ~marking]
+        if self.needs & ~marking or not (known or self.has_constant):
+            return None
+        rest = marking & ~self.needs
+        for k in known:
+            rest &= ~k
+        return None if rest & self.gives else rest | self.gives
+
+
 def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> None:
     """Look for an order.
 
@@ -66,7 +87,8 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
         BrokenError: CPN Tools' check ends with an internal error.
     """
     found = tables.groups[group]
-    steps = _Steps(tables, found).all(is_small)
+    made = _Steps(tables, found)
+    steps = made.all(is_small)
     every = (1 << found.count) - 1
     start = ((1 << (len(found.arcs) + len(found.conditions))) - 1) << found.count
     tests = [s for s in steps if s.tests]
@@ -87,6 +109,7 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
             rest = marking & ~s.needs
             if s.needs & ~marking == 0 and (s.may_rebind or not rest & s.gives):
                 stack.append(rest | s.gives)
+        stack += [after for x in made.lookups if (after := x.after(marking)) is not None]
     names = frozenset(n for n in found.names if not best >> tables.known[n].number & 1)
     raise StuckError(names or frozenset(found.names))
 
@@ -103,6 +126,8 @@ class _Steps:
         self._tables = tables
         self._group = group
         self._length = group.count + len(group.arcs) + len(group.conditions)
+        self.lookups: list[_Lookup] = []
+        """Once all steps were asked for."""
 
     def all(self, is_small: Callable[[Symbol], bool]) -> list[_Step]:
         found: list[_Step] = []
@@ -137,7 +162,7 @@ class _Steps:
 
     def _leaf(self, leaf: Leaf, open_: int, is_sum: bool) -> Iterator[_Step]:
         if leaf.coefficient == () and leaf.is_pattern:
-            yield self._taken(leaf, (), open_, is_sum)
+            yield self._taken(leaf, open_, is_sum)
         if leaf.coefficient or not leaf.is_record or len(leaf.entries) < 2:
             return
         constant = tuple(e for e in leaf.entries if not e)
@@ -145,16 +170,15 @@ class _Steps:
             return
         keys = [e for e in leaf.entries if e and self._is_key(e)]
         self._bits(leaf.names(), is_bindable=True)
-        for n in range(len(keys) + 1):
-            for some in combinations(keys, n):
-                if some or constant:
-                    names = tuple(x for entry in some for x in entry)
-                    yield self._taken(leaf, names, open_, is_sum)
+        if keys or constant:
+            step = self._taken(leaf, open_, is_sum)
+            bits = tuple(map(self._bits, keys))
+            self.lookups.append(_Lookup(step.needs, bits, bool(constant), step.gives))
 
-    def _taken(self, leaf: Leaf, keys: tuple[Name, ...], open_: int, is_sum: bool) -> _Step:
+    def _taken(self, leaf: Leaf, open_: int, is_sum: bool) -> _Step:
         delay = self._bits(leaf.delay)
         gives = self._bits(leaf.names(), is_bindable=True) | delay
-        return _Step(open_ | delay | self._bits(keys), gives | (open_ if is_sum else 0))
+        return _Step(open_ | delay, gives | (open_ if is_sum else 0))
 
     def _is_key(self, names: tuple[Name, ...]) -> bool:
         return all(n in self._tables.known and self._tables.known[n].expressions > 1 for n in names)

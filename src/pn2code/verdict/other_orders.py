@@ -4,7 +4,8 @@ found = look(opened, found, limits, options)
 found.orders               # what raises an exception in some order, where nothing does here
 found.error["everywhere"]  # whether what raises one here does so in every order
 
-A cell is not looked at again: what is said of it is said of its programs, which ask in the order here.
+Of a cell this is said of its closed net, apart: what is said of its programs, which ask in the order here, does not
+depend on it.
 """
 
 from __future__ import annotations
@@ -50,9 +51,10 @@ def look(
     Raises:
         GameError: as for `explore`.
     """
-    if opened.config is not None:
-        return found
+    is_cell = opened.config is not None
     if found.error is not None and found.why == "error":
+        if is_cell:
+            return found
         everywhere = _is_everywhere(opened, found)
         return replace(found, error={**found.error, "everywhere": everywhere})
     if not found.complete and not (options.questions and found.why in _PARTS):
@@ -61,12 +63,11 @@ def look(
         with limits.deadline.enforced():
             made = asking(opened.flat, _sizes(opened, found, options))
     except TimeIsOverError:
-        return replace(found, orders=OtherOrders("seconds"))
-    return (
-        found
-        if made is None
-        else replace(found, orders=_asked(opened, made, found, limits, options))
-    )
+        return replace(found, orders=OtherOrders("seconds", of_cell=is_cell))
+    if made is None:
+        return found
+    orders = replace(_asked(opened, made, found, limits, options), of_cell=is_cell)
+    return replace(found, orders=orders)
 
 
 def _sizes(opened: OpenNet, found: Exploration, options: ExploreOptions) -> Magnitudes:
@@ -184,6 +185,9 @@ def tell(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     t = None if raised.transition is None else opened.flat.transitions[raised.transition]
     where = "the net" if t is None else f"transition `{t.short}`"
     notes: list[str | Note] = []
+    if orders.of_cell:
+        where += " of the closed net"
+        notes.append("the cell's programs ask in the order here, and what is said of them stays so")
     if raised.trace is not None:
         notes.append(f"{raised.trace.steps} steps lead to that marking: {raised.trace.file}")
     if raised.kind == "outside":

@@ -33,7 +33,7 @@ from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import Exploration, OtherOrders
 from pn2code.verify.exploring.result import row as exploration_row
 from pn2code.verify.report.never_text import never
 
@@ -140,9 +140,11 @@ class Said:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is no failure, and to be said beside a yes: transitions that never occur."""
+        """What is no failure, and to be said: of the closed net in CPN Tools; beside a yes what never occurs."""
+        apart = outcome.closed_net(self.net, self.found)
         found = never(self.net, self.found, self.control) if self.verdict == "yes" else None
-        return (found.sentence,) if found is not None and found.transitions else ()
+        seldom = (found.sentence,) if found is not None and found.transitions else ()
+        return (*seldom, *((apart,) if apart else ()))
 
     def row(self) -> dict[str, Any]:
         """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""
@@ -267,13 +269,8 @@ def conclude(
     answers = properties.answered(
         asked, opened, found, looked.more, folder, stem(opened), limits.deadline, d, control
     )
-    if outcome.may_stop(found):  # a run that shows something may be longer than what CPN Tools does
-        answers = tuple(
-            replace(a, answer="inconclusive", why=clause("order"), evidence=None)
-            if kind(a) == "good" or (found.orders is not None and found.orders.more)
-            else a
-            for a in answers
-        )
+    if found.orders is not None and found.orders.why:
+        answers = tuple(_in_other_orders(a, found.orders) for a in answers)
     other_orders.tell(opened, found, d)
     if outcome.has_raised(found):
         _tell_error(opened, found, d)
@@ -292,6 +289,17 @@ def conclude(
         limits.deadline,
         opened.config,
     )
+
+
+def _in_other_orders(a: Answer, orders: OtherOrders) -> Answer:
+    """An answer where CPN Tools may stop: a run that shows something may be longer than what it does."""
+    if not a.cell:
+        is_open = kind(a) == "good" or orders.more
+        why = clause("order")
+        return replace(a, answer="inconclusive", why=why, evidence=None) if is_open else a
+    of_net = None if a.net is None else replace(a, answer=a.net)
+    is_open = of_net is not None and (kind(of_net) == "good" or orders.more)
+    return replace(a, net="inconclusive", net_why=clause("order")) if is_open else a
 
 
 @contextmanager

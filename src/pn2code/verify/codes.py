@@ -18,6 +18,7 @@ TIME_OVER = register(
     "exploring, answering and printing. Everything that was still running when the time was up has been ended, "
     "including the C compiler. Answers that are missing because of this are reported as not known (exit code 3). Give "
     "it more time. The compiled net is kept, so a second run needs less.",
+    is_answer=True,
 )
 STATE_ERROR = register(
     "state-error",
@@ -25,6 +26,7 @@ STATE_ERROR = register(
     "While the state space was computed, an arc inscription, a guard, a delay or a code segment raised an exception "
     "(Overflow, Div, a value outside its colour set, ...), as in a simulation that reaches this marking. CPN Tools "
     "stops its calculation, too. What was seen until then is reported as partial.",
+    is_answer=True,
 )
 OTHER_ORDER = register(
     "other-order",
@@ -34,6 +36,7 @@ OTHER_ORDER = register(
     "that does not here, since another condition ends the question before. Which order CPN Tools takes cannot be told "
     "from the net (`guard-order`), so it is not known whether it stops there, and no answer is a yes. The run leads to "
     "that marking.",
+    is_answer=True,
 )
 BEYOND_ROOM = register(
     "place-unbounded",
@@ -124,6 +127,7 @@ CONTROL_OPEN = register(
     "it is not known whether the supervisor keeps to its execution scheme",
     "Not all states of the cell as it runs were seen (`generate` looks at 3,000,000), or there is no C compiler. "
     "The programs are generated, and say that they are not checked. `pn2code verify cell.toml` has no such limits.",
+    is_answer=True,
 )
 CONTROL_BEYOND = register(
     "controller-beyond",

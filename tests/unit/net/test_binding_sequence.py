@@ -106,3 +106,24 @@ def test_variables_that_need_each_other_are_refused(case: str) -> None:
     of_large_sets = {"unbound-variable"}
     found = set(said_of(case))
     assert found in ({"binding-circle"}, of_large_sets), found
+
+
+@pytest.mark.parametrize("guard", ["", " guard [v0 = v1]"])
+def test_a_wide_record_on_two_arcs_comes_to_an_end(guard: str) -> None:
+    """Each of its components may find the token, and each subset of them: of 40 there are too many."""
+    labels = range(40)
+    record = " * ".join(f"f{i}: INT" for i in labels)
+    value = ", ".join(f"f{i} = v{i}" for i in labels)
+    names = ", ".join(f"v{i}" for i in labels)
+    net = f"""
+    net N
+      standard
+      colset R = record {record};
+      var {names}: INT;
+      place A : R
+      place B : R
+      trans T{guard}
+        in A : {{{value}}}
+        in B : {{{value}}}
+    """
+    assert not diagnose(net).items

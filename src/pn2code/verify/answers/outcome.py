@@ -126,8 +126,8 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
 
 
 def may_stop(found: Exploration) -> bool:
-    """Whether CPN Tools may stop with an exception, or it is not known that it does not."""
-    return found.orders is not None and bool(found.orders.why)
+    """Whether CPN Tools may stop with an exception, or it is not known that it does not, and answers rest on that."""
+    return found.orders is not None and bool(found.orders.why) and not found.orders.of_cell
 
 
 def order_text(net: FlatNet, found: Exploration) -> str:
@@ -159,6 +159,16 @@ def order_text(net: FlatNet, found: Exploration) -> str:
     )
 
 
+def closed_net(net: FlatNet, found: Exploration) -> str:
+    """What other orders may do to the closed net of a cell, in sentences; "": nothing, or that was not looked at."""
+    if found.orders is None or not found.orders.of_cell or not found.orders.why:
+        return ""
+    programs = (
+        "The cell's programs ask conditions in the order here, and the verdict is about them."
+    )
+    return f"{programs} Of the closed net: {order_text(net, found)}"
+
+
 def does(there: RaisedThere) -> str:
     """What is wrong with the text of it, behind that."""
     return there.message if there.kind == "outside" else raises(there.message)
@@ -166,6 +176,8 @@ def does(there: RaisedThere) -> str:
 
 def _in_order(net: FlatNet, found: Exploration) -> str:
     """Of conditions that may be asked in another order, what became of it, after a blank; or ""."""
+    if closed_net(net, found):
+        return ""
     if found.complete and found.orders is not None:
         return " In every order in which CPN Tools may ask conditions none of them raises an exception."
     warned = guard_order.unsure(net)

@@ -161,11 +161,13 @@ class OtherOrders:
             one of those of `Exploration`, "ways" (there are too many), "truncated".
         raised: of "error".
         more: whether CPN Tools might find other bindings: then what is wrong here need not be so there.
+        of_cell: whether the net is that of a cell: then nothing that is said of its programs depends on it.
     """
 
     why: str
     raised: RaisedThere | None = None
     more: bool = False
+    of_cell: bool = False
 
 
 @frozen
@@ -433,7 +435,12 @@ def _orders_row(net: FlatNet, orders: OtherOrders | None) -> dict[str, Any] | No
             "node": raised.node,
             "trace": None if trace is None else {**asdict(trace), "file": str(trace.file)},
         }
-    return {"harmless": not orders.why, "why": orders.why, "raised": row}
+    return {
+        "harmless": not orders.why,
+        "why": orders.why,
+        "raised": row,
+        "of_cell": orders.of_cell,
+    }
 
 
 def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:

@@ -17,6 +17,7 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.assumptions import assumed
 from pn2code.verify.answers.outcome import (
     Counts,
+    closed_net,
     error_text,
     good_of,
     header,
@@ -216,6 +217,8 @@ def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str
         said.append({"kind": "bad" if is_everywhere(found) else "open", "text": text})
     if may_stop(found):
         said.append({"kind": "open", "text": order_text(net, found).replace("`", "")})
+    if apart := closed_net(net, found):
+        said.append({"kind": "open", "text": apart.replace("`", "")})
     if found.dead_count:
         number = f"{found.dead_count:,} dead marking{'s' * (found.dead_count > 1)}"
         said.append({"kind": "open", "text": f"{number}: nothing is enabled there."})
