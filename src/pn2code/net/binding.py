@@ -32,7 +32,7 @@ from pn2code.net.codes import (
 )
 from pn2code.net.engine_binding import Answer, PlaceNode, TakingArc, examine
 from pn2code.net.engine_code import loses_parentheses
-from pn2code.net.engine_parts import PartReader
+from pn2code.net.engine_parts import PartReader, has_long_delay
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
     ArcInscription,
@@ -43,6 +43,7 @@ from pn2code.net.flat import (
     BindStep,
     BindTerm,
     CodeSegment,
+    Term,
 )
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
@@ -178,6 +179,8 @@ class Planner:
             for (kind, inscription), place in zip(parts.arcs, places, strict=True)
             if inscription is not None and kind in TAKING
         ]
+        if any(self.is_layered(t) for arc in arcs for t in arc.inscription.terms):
+            return True
         if not parts.written and self.is_evident(arcs):
             self.warn_of_code(parts, arcs)
             return True
@@ -220,9 +223,17 @@ class Planner:
     def is_evident(self, arcs: Sequence[TakingArc]) -> bool:
         """Whether an order is found whatever the variables are: without a guard, by an arc with one summand."""
         terms = [t for arc in arcs for t in arc.inscription.terms]
-        return len(terms) < 2 and not any(
-            self.variables.seen(t.coefficient) or self.variables.seen(t.delay) for t in terms
+        return (
+            len(terms) < 2
+            and not any(has_long_delay(arc.inscription.value) for arc in arcs)
+            and not any(
+                self.variables.seen(t.coefficient) or self.variables.seen(t.delay) for t in terms
+            )
         )
+
+    def is_layered(self, term: Term) -> bool:
+        """Whether it is `x as pattern`, which CPN Tools does not take on any arc: of this a warning tells."""
+        return not self.variables.seen(term.value).keys() >= set(pattern_variables(term.pattern))
 
     def warn_of_shared(self, parts: Parts, kind: str, later: Origin, earlier: Origin) -> None:
         """Of arcs from one place whose variables CPN Tools cannot bring together."""
@@ -255,6 +266,17 @@ class Planner:
                     notes=[Note(HERE, parts.origin)],
                     hint="of summands that share a variable one must have all the variables of the others; or give the "
                     "shared variable its value elsewhere, on another arc or by a guard",
+                )
+                return
+            if has_long_delay(arc.inscription.value) and any(s & missing for s in summands):
+                self.d.error(
+                    BINDING_CIRCLE,
+                    f"CPN Tools cannot bind {names} of transition `{parts.name}`: on an input arc it takes what has a "
+                    "delay after `@++` for a value as a whole, which binds nothing",
+                    arc.inscription.origin,
+                    notes=[Note(HERE, parts.origin)],
+                    hint="write the delay with `@+`, or give the variables values elsewhere: on another arc, by a "
+                    "guard, or from a small colour set",
                 )
                 return
         first = min(missing, key=lambda s: s.name)

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Apply, Builtin, Exp, PEqual, RecordExp, Sequence, Symbol
 from pn2code.net.flat import Form
-from pn2code.net.terms import TermReader, binary
+from pn2code.net.terms import TermReader, binary, split
 from pn2code.net.uses import NetVariables, walk_pattern
 
 _DELAYS = ("Time.@+", "Time.token@+")
@@ -127,3 +127,11 @@ def inside(e: Exp) -> Exp:
     while isinstance(e, Sequence) and len(e.items) == 1:
         e = e.items[0]
     return e
+
+
+def has_long_delay(e: Exp) -> bool:
+    """Whether a summand has a delay after `@++`: CPN Tools takes all of it for a value, which binds nothing."""
+    found = (
+        binary(inside(part), ("Time.@++", "Time.token@++")) for part in split(e, ("Time.+++",))
+    )
+    return any(x is not None for x in found)

@@ -30,7 +30,7 @@ _WORD = "reachable "
 _OPERATORS = frozenset({"not", "and", "or", "implies", "iff"})
 
 
-@frozen(eq=False)
+@frozen
 class Failing:
     """The conditions of a cell.
 

@@ -127,3 +127,43 @@ def test_a_wide_record_on_two_arcs_comes_to_an_end(guard: str) -> None:
         in B : {{{value}}}
     """
     assert not diagnose(net).items
+
+
+DELAYED = """
+    net N
+      standard
+      colset T = int timed;
+      colset K = int with 0..3 timed;
+      colset U = int;
+      colset W = union V: U + X;
+      var t: T; var k: K; var n: U; var w: W;
+      place A : T
+      place B : K
+      place Q : U
+      place D : W
+      trans X
+"""
+
+
+@pytest.mark.parametrize(
+    ("arcs", "codes"),
+    [
+        ("in A : t@+1", []),
+        ("in A : 1`t@+1", []),
+        ("in B : k@++1", []),  # of a small colour set all values are tried
+        ("in A : t@++1;in Q : t", []),
+        ("in A : t@++1", ["binding-circle"]),
+        ("in A : 1`t@++1", ["binding-circle"]),
+        ("in A : 1`3@+1 +++ 1`t@++1", ["binding-circle"]),
+        ("in A : t@+t", ["binding-circle"]),
+    ],
+)
+def test_a_long_delay_on_an_input_arc_is_no_pattern(arcs: str, codes: list[str]) -> None:
+    """As the engine says: it was asked about each."""
+    text = DELAYED + "\n".join(f"        {a}" for a in arcs.split(";"))
+    assert [e.code for e in diagnose(text).errors] == codes
+
+
+def test_what_is_taken_beyond_cpn_tools_is_not_refused_for_its_sake() -> None:
+    found = diagnose(DELAYED + "        guard [n > 1]\n        in D : w as V n")
+    assert [(e.severity.name, e.code) for e in found.items] == [("WARNING", "arc-as-pattern")]

@@ -180,10 +180,10 @@ def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     made = RunRecord("cell", "", "bullet", verdict="finished")
     engine: Any = SimpleNamespace(
         record=made,
-        cell=SimpleNamespace(robots=("arm",)),
+        cell=SimpleNamespace(robots=(SimpleNamespace(name="other"),)),
         backend=None,
         activity="",
-        robots=[SimpleNamespace(tool_action=lambda: "drill")],
+        robots=[SimpleNamespace(name="arm", tool_action=lambda: "drill")],
     )
     pictures = Album(tmp_path)
     pictures.begun(engine)
@@ -205,7 +205,7 @@ def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 def test_a_cell_without_arms_has_no_pictures(tmp_path: Path) -> None:
     made = RunRecord("cell", "", "bullet", verdict="finished")
     engine: Any = SimpleNamespace(
-        record=made, cell=SimpleNamespace(robots=()), backend=None, activity="", robots=[]
+        record=made, cell=SimpleNamespace(robots=(SimpleNamespace(name="other"),)), backend=None, activity="", robots=[]
     )
     pictures = Album(tmp_path, video=True)
     pictures.begun(engine)

@@ -12,10 +12,11 @@ from typing import Any
 
 import pytest
 
-from helpers.netbuilder import flat, write
+from helpers.netbuilder import flat, load, write
 from helpers.random_nets import random_net
 from helpers.structure import wrong_in, wrong_on_walk, wrong_proofs, wrong_step
 from pn2code.cli import main
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.structure import Analysis, Limits, analyse, bounds, report
@@ -731,10 +732,22 @@ def test_hierarchy_and_fusion_work_on_instances() -> None:
     assert a.strongly_connected is False
 
 
+def accepted_net(seed: int) -> FlatNet:
+    """A net at random that `check` accepts: in a few, arcs share variables as CPN Tools does not take them."""
+    for other in range(seed, seed + 100_000, 1000):
+        made, d = load(random_net(random.Random(other)))
+        if made is not None and not d.errors:
+            return made
+        assert {e.code for e in d.errors} <= {"binding-circle", "summands-share-variables"}, (
+            d.errors
+        )
+    raise AssertionError("no net is accepted")
+
+
 @pytest.mark.parametrize("seed", range(25))
 def test_random_nets(seed: int) -> None:
     """Whatever is claimed of a net at random holds along walks."""
-    made = flat(random_net(random.Random(seed + 5000)))
+    made = accepted_net(seed + 5000)
     a = analyse(made)
     assert list(wrong_proofs(a)) == []
     assert report.text(a)
