@@ -178,8 +178,10 @@ void sy_freeze(sy_diagrams_t *d, sy_node_t n, sy_frozen_t *f);
 void sy_unfreeze(const sy_diagrams_t *d, sy_frozen_t *f);
 /* The largest sum of factor * tokens, by level; false: it is too large. */
 bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum);
-/* Print the numbers of markings and arcs, and the most tokens in a place and in a marking. */
-void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f);
+bool sy_largest_of(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_formula_t *sum, int64_t *most);
+/* Print the numbers of markings and arcs, and the most tokens in a place and in a marking. Bounds that are asked say of
+ * a net that was made smaller what a marking (the first) and further places (the others) hold, less their limits. */
+void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job);
 
 /* --- formulas (symbolic_formula.c) -------------------------------------------------------------------------------- */
 

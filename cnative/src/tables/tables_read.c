@@ -9,6 +9,7 @@
  *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
  *         guided N (transition times).. and one of them: a guess how the formula may become true, for walks
  *     order, and all places, from the top of a diagram downwards: where diagrams are wanted
+ *     leaves, and for each place how many share its tokens in each possible way: where a net was made smaller, to count
  *
  *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit
  *                | enabled N transition.. | EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
@@ -323,10 +324,6 @@ static void read_question(reader_t *r, tb_question_t *q)
 /* Each place once. */
 static void read_order(reader_t *r, tb_job_t *job)
 {
-    char word[LONGEST_WORD];
-    if ((fscanf(r->file, "%63s", word) != 1) || (strcmp(word, "order") != 0)) {
-        return;
-    }
     bool *is_there = tb_new(job->net.places, sizeof *is_there);
     job->order = tb_new(job->net.places, sizeof *job->order);
     for (uint32_t i = 0U; i < job->net.places; i++) {
@@ -337,6 +334,29 @@ static void read_order(reader_t *r, tb_job_t *job)
         is_there[job->order[i]] = true;
     }
     tb_free(is_there, job->net.places, sizeof *is_there);
+}
+
+static void read_leaves(reader_t *r, tb_job_t *job)
+{
+    job->leaves = tb_new(job->net.places, sizeof *job->leaves);
+    for (uint32_t i = 0U; i < job->net.places; i++) {
+        job->leaves[i] = (uint32_t)number(r, 1, INT32_MAX);
+    }
+}
+
+/* What may stand at the end. */
+static void read_rest(reader_t *r, tb_job_t *job)
+{
+    char word[LONGEST_WORD];
+    while (fscanf(r->file, "%63s", word) == 1) {
+        if (strcmp(word, "order") == 0) {
+            read_order(r, job);
+        } else if (strcmp(word, "leaves") == 0) {
+            read_leaves(r, job);
+        } else {
+            tb_fail(TB_EXIT_WRONG, "`%s` is not known at the end", word);
+        }
+    }
 }
 
 void tb_read(tb_job_t *job, const char *path)
@@ -351,6 +371,6 @@ void tb_read(tb_job_t *job, const char *path)
     for (uint32_t i = 0U; i < job->questions; i++) {
         read_question(&r, &job->question[i]);
     }
-    read_order(&r, job);
+    read_rest(&r, job);
     (void)fclose(r.file);
 }

@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator
 from functools import cached_property
 
+from pn2code.contest.counting import Counted, smaller
 from pn2code.contest.engine import Task
 from pn2code.contest.tables import Tables
 from pn2code.symbolic.order import orders
@@ -25,6 +26,8 @@ KINDS = ("reach", "bound", "ctl", "ltl")
 
 _SHARES = (0.1, 0.15, 0.15, 0.6)
 """Of the time, for one order after the other where there are several."""
+_MAKING = 0.1
+"""Of the time, to make the net smaller before its markings are counted."""
 
 
 class Diagrams:
@@ -33,23 +36,37 @@ class Diagrams:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.lock = threading.Lock()
+        self.counted: Counted | None = None
+        self.is_tried = False
 
     @cached_property
     def orders(self) -> list[list[int]]:
         """The most promising one first."""
         return orders(len(self.tables.initial), self.tables.pre, self.tables.post)
 
+    def smaller(self, until: float) -> Counted | None:
+        """The net for counting, made smaller once; None: it is not to be had."""
+        if not self.is_tried:
+            self.is_tried = True
+            self.counted = smaller(self.tables, until)
+            if self.counted is not None:
+                t = self.counted.tables
+                self.orders = orders(len(t.initial), t.pre, t.post)
+        return self.counted
+
     def sizes(self, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
 
-        Each order has a short time at first; the most promising two have what is left. The orders are made when the
-        first lane asks for a task, since this takes long for large nets.
+        Each order has a short time at first; the most promising two have what is left. The net is made smaller, and
+        the orders are made, when the first lane asks for a task, since this takes long for large nets.
         """
         ends = time.monotonic() + seconds
         return [self._lane(which, ends, mebibytes) for which in range(2)]
 
     def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
         with self.lock:
+            now = time.monotonic()
+            counted = self.smaller(now + _MAKING * (ends - now))
             orders = self.orders
         shares: tuple[float, ...]
         row, shares = orders[which : which + 1], (1.0,)
@@ -57,4 +74,5 @@ class Diagrams:
             row, shares = [*orders[which::2][:3], orders[which]], _SHARES
         seconds = max(0.0, ends - time.monotonic())
         for order, share in zip(row, shares[len(shares) - len(row) :], strict=True):
-            yield Task("sizes", self.tables.text([], order), share * seconds, mebibytes)
+            text = self.tables.text([], order) if counted is None else counted.text(order)
+            yield Task("sizes", text, share * seconds, mebibytes)
