@@ -13,9 +13,10 @@ import pytest
 from helpers.examined import sizes
 from helpers.random_tables import Graph, random_tables, restless_tables
 from helpers.table_families import kanban
-from pn2code.contest.counting import Counted, smaller
+from pn2code.contest.counting import Counted, smaller, units_of
 from pn2code.contest.engine import Space, Task, ask, engine
 from pn2code.contest.portfolio import space
+from pn2code.contest.reduction.net import Affine
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
@@ -81,17 +82,43 @@ def _tables(initial: list[int], pre: list[dict[int, int]], post: list[dict[int, 
 def _counted(program: Path, tables: Tables) -> tuple[Counted, Space | None]:
     made = smaller(tables, time.monotonic() + SECONDS)
     assert made is not None
-    text = made.text(range(len(made.leaves)))
+    return made, _sizes(program, made)
+
+
+def _sizes(program: Path, made: Counted) -> Space | None:
+    text = made.text(range(len(made.drawn.initial)))
     found = list(ask(program, [Task("sizes", text, SECONDS, 256)]))
     assert all(isinstance(f, Space) for f in found)
-    return made, next((f for f in found if isinstance(f, Space)), None)
+    return next((f for f in found if isinstance(f, Space)), None)
+
+
+def automata(draw: random.Random) -> Tables:
+    """Processes with a state each, which move alone or two at once, and look at the states of others."""
+    first = [0]
+    for _ in range(draw.randint(2, 4)):
+        first.append(first[-1] + draw.randint(2, 4))
+    initial = [0] * first[-1]
+    for p in first[:-1]:
+        initial[p + draw.randint(0, 1)] = 1
+    pre: list[dict[int, int]] = []
+    post: list[dict[int, int]] = []
+    for _ in range(draw.randint(4, 12)):
+        some = draw.sample(range(len(first) - 1), draw.choice((1, 1, 2)))
+        taken = {draw.randrange(first[k], first[k + 1]): 1 for k in some}
+        put = {draw.randrange(first[k], first[k + 1]): 1 for k in some}
+        p = draw.randrange(first[-1])
+        if draw.random() < 0.4 and p not in taken and p not in put:
+            taken[p] = put[p] = 1
+        pre.append(taken)
+        post.append(put)
+    return _tables(initial, pre, post)
 
 
 def test_random_nets(program: Path) -> None:
     shared = sums = 0
     for seed in range(60):
         draw = random.Random(seed)
-        tables = (circuits, circuits, random_tables, restless_tables)[seed % 4](draw)
+        tables = (circuits, automata, random_tables, restless_tables)[seed % 4](draw)
         graph = Graph.of(tables, 1000)
         if graph is None:
             continue
@@ -100,6 +127,27 @@ def test_random_nets(program: Path) -> None:
         shared += max(made.leaves, default=0) > 1
         sums += sum(made.leaves) < len(tables.initial)
     assert shared > 10 and sums > 20
+
+
+def test_random_automata_as_values(program: Path) -> None:
+    """Nothing is made smaller; each place of its own, or in a unit."""
+    units = 0
+    for seed in range(30):
+        tables = automata(random.Random(seed))
+        graph = Graph.of(tables)
+        assert graph is not None
+        places = len(tables.initial)
+        found = units_of(tables, time.monotonic() + SECONDS)
+        total = Affine(0, dict.fromkeys(range(places), 1))
+        sums = (Affine(1, {0: 2, places - 1: -1}),)
+        made = Counted.of(tables, (1,) * places, total, sums, found)
+        states, arcs, in_place, in_marking = graph.sizes
+        most = max(1 + 2 * m[0] - m[-1] for m in graph.markings)
+        expected = states, arcs, max(in_place, most), in_marking
+        assert sizes(_sizes(program, made)) == expected, seed
+        assert sizes(_sizes(program, made.without_units())) == expected, seed
+        units += len(found)
+    assert units > 60
 
 
 def test_tokens_that_go_round_by_themselves(program: Path) -> None:
@@ -135,6 +183,17 @@ def test_a_place_that_others_depend_on_stays(program: Path) -> None:
     made, found = _counted(program, _tables([3, 0], pre, post))
     assert sizes(found) == (4, 5, 3, 3)
     assert sum(made.leaves) == 2
+
+
+def test_one_of_several_places_is_a_value(program: Path) -> None:
+    """Two processes of three states, one of which needs the other one to be in its first state, or in its last."""
+    pre = [{0: 1, 3: 1}, {1: 1, 5: 1}, {2: 1}, {3: 1}, {4: 1, 0: 1}, {5: 1}]
+    post = [{1: 1, 3: 1}, {2: 1, 5: 1}, {0: 1}, {4: 1}, {5: 1, 0: 1}, {3: 1}]
+    tables = _tables([1, 0, 0, 1, 0, 0], pre, post)
+    graph = Graph.of(tables)
+    made, found = _counted(program, tables)
+    assert graph is not None and sizes(found) == graph.sizes
+    assert sorted(map(len, made.units)) == [2, 3] and len(made.drawn.initial) == 2
 
 
 def test_a_large_kanban_system(program: Path) -> None:

@@ -91,6 +91,7 @@ static void *work(void *argument)
 {
     run_t *r = argument;
     sy_init(&r->d, &r->job->net, r->job->order);
+    r->d.exact = r->job->exact;
     if (setjmp(r->d.given_up) != 0) {
         tb_fail(TB_EXIT_TIME, "time is over");
     }

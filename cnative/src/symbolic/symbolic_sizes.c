@@ -128,7 +128,22 @@ void sy_unfreeze(const sy_diagrams_t *d, sy_frozen_t *f)
 
 /* --- sums --------------------------------------------------------------------------------------------------------- */
 
-bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
+/* By level a factor, or what each value adds. */
+typedef struct factors {
+    const int64_t *factor;
+    int64_t **added; /* NULL: there are factors only */
+} factors_t;
+
+static bool product_of(const factors_t *f, uint32_t level, tb_count_t tokens, int64_t *product)
+{
+    if ((f->added != NULL) && (f->added[level] != NULL)) {
+        *product = f->added[level][tokens];
+        return true;
+    }
+    return !__builtin_mul_overflow(f->factor[level], (int64_t)tokens, product);
+}
+
+static bool largest(const sy_frozen_t *f, const factors_t *of, int64_t *sum)
 {
     int64_t *best = tb_new(f->nodes, sizeof *best);
     bool is_small = true;
@@ -136,7 +151,7 @@ bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
         best[i] = INT64_MIN;
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
             int64_t all;
-            is_small = is_small && !__builtin_mul_overflow(factor[f->level[i]], (int64_t)f->tokens[e], &all)
+            is_small = is_small && product_of(of, f->level[i], f->tokens[e], &all)
                        && !__builtin_add_overflow(all, best[f->child[e]], &all);
             best[i] = (is_small && (all > best[i])) ? all : best[i];
         }
@@ -146,14 +161,39 @@ bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
     return is_small;
 }
 
+bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
+{
+    const factors_t of = { factor, NULL };
+    return largest(f, &of, sum);
+}
+
+/* The terms of an exact place are for its values, one after the other. */
 bool sy_largest_of(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_formula_t *sum, int64_t *most)
 {
-    int64_t *factor = tb_new((size_t)d->levels + 1U, sizeof *factor);
+    const size_t levels = (size_t)d->levels + 1U;
+    int64_t *factor = tb_new(levels, sizeof *factor);
+    int64_t **added = tb_new(levels, sizeof *added);
+    uint32_t *terms = tb_new(levels, sizeof *terms);
     for (uint32_t i = 0U; i < sum->count; i++) {
-        factor[d->level[sum->term[i].place]] += sum->term[i].factor;
+        const uint32_t level = d->level[sum->term[i].place];
+        const uint32_t *exact = sy_exact(d, level);
+        if (exact == NULL) {
+            factor[level] += sum->term[i].factor;
+        } else {
+            added[level] = (added[level] != NULL) ? added[level] : tb_new((size_t)exact[0] + 1U, sizeof **added);
+            terms[level] += (terms[level] < exact[0]) ? 1U : 0U;
+            added[level][terms[level]] = sum->term[i].factor;
+        }
     }
-    const bool is_small = sy_largest(f, factor, most);
-    tb_free(factor, (size_t)d->levels + 1U, sizeof *factor);
+    const factors_t of = { factor, added };
+    const bool is_small = largest(f, &of, most);
+    for (uint32_t level = 1U; level <= d->levels; level++) {
+        const uint32_t *exact = sy_exact(d, level);
+        tb_free(added[level], (exact != NULL) ? ((size_t)exact[0] + 1U) : 0U, sizeof **added);
+    }
+    tb_free(factor, levels, sizeof *factor);
+    tb_free(added, levels, sizeof *added);
+    tb_free(terms, levels, sizeof *terms);
     return is_small;
 }
 
@@ -278,7 +318,10 @@ static double bits(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t 
         double most = 0.0;
         double sum = 0.0;
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
-            of_edge[e] = exponent[f->child[e]] + log2_of_ways(leaves_at(d, job, f->level[i]), f->tokens[e]);
+            const uint32_t *exact = sy_exact(d, f->level[i]);
+            const double ways = (exact != NULL) ? log2((double)((f->tokens[e] > 0U) ? exact[f->tokens[e]] : 1U))
+                                                : log2_of_ways(leaves_at(d, job, f->level[i]), f->tokens[e]);
+            of_edge[e] = exponent[f->child[e]] + ways;
             most = (of_edge[e] > most) ? of_edge[e] : most;
         }
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
@@ -330,11 +373,25 @@ static void forget_ways(counting_t *c)
     tb_free(c->ways, (size_t)c->d->levels + 1U, sizeof(ways_t *));
 }
 
-/* sum += number * ways to divide tokens at a level */
+/* sum += number * factor */
+static void plus_times(uint64_t *sum, const uint64_t *number, uint32_t factor, uint32_t words)
+{
+    uint64_t carry = 0U;
+    for (uint32_t i = 0U; i < words; i++) {
+        __extension__ const unsigned __int128 p = ((unsigned __int128)number[i] * factor) + sum[i] + carry;
+        sum[i] = (uint64_t)p;
+        carry = (uint64_t)(p >> (uint32_t)WORD_BITS);
+    }
+}
+
+/* sum += number * ways to divide tokens at a level; 0 tokens: where they are is known */
 static void plus_ways(const counting_t *c, uint64_t *sum, const uint64_t *number, uint32_t level, tb_count_t tokens)
 {
     const ways_t *w = c->ways[level];
-    if ((w->leaves == 1U) || (tokens == 0U)) {
+    const uint32_t *exact = sy_exact(c->d, level);
+    if ((exact != NULL) && (tokens > 0U)) {
+        plus_times(sum, number, exact[tokens], c->words);
+    } else if ((w->leaves == 1U) || (tokens == 0U)) {
         plus(sum, number, c->words);
     } else {
         plus_product(sum, &w->table[(size_t)tokens * c->words], number, c->words);
@@ -387,7 +444,7 @@ static const uint64_t *count_enabled(counting_t *c, uint32_t node, sy_path_t pat
     (void)memset(sum, 0, c->words * sizeof *sum);
     const bool is_here = f->level[node] == s->level;
     for (uint64_t e = f->first[node]; e < f->first[node + 1U]; e++) {
-        if (!is_here || (f->tokens[e] >= s->take)) {
+        if (!is_here || sy_permits(s, f->tokens[e])) {
             const uint64_t *child = count_enabled(c, f->child[e], is_here ? s->rest : path, transition);
             plus_ways(c, sum, child, f->level[node], f->tokens[e] - (is_here ? s->take : 0U));
         }
@@ -422,7 +479,9 @@ static void print_tokens(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_
     int64_t in_place = 0;
     for (uint32_t l = 1U; l <= d->levels; l++) {
         factor[l] = 1;
-        in_place = ((int64_t)d->most[l] > in_place) ? (int64_t)d->most[l] : in_place;
+        const bool is_value = (sy_exact(d, l) != NULL) && (d->most[l] > 0U);
+        const int64_t most = is_value ? 1 : (int64_t)d->most[l];
+        in_place = (most > in_place) ? most : in_place;
     }
     bool is_small = sy_largest(f, factor, &in_marking); /* at most 2^32 places with 2^30 tokens */
     for (uint32_t i = 0U; is_small && (i < job->questions); i++) {

@@ -13,17 +13,20 @@ A place that stands for several, its leaves, holds the tokens of all of them, di
 A marking with k tokens on n leaves stands for C(k + n - 1, n - 1), of which C(k - w + n - 1, n - 1) have the w tokens
 that a transition needs on some of them. A place whose tokens follow from those of others (Colom, Silva 1991) goes, if
 it never is an obstacle; how many it holds is a sum. Transitions that change nothing (any more) are kept, to be counted.
+
+Places of which invariants say that one at most is marked, with one token, are one place with a value (`Counted.exact`):
+diagrams have fewer levels then.
 """
 
 from __future__ import annotations
 
 import time
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import gcd
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, vstack
 from scipy.sparse.csgraph import connected_components
 
 from pn2code.base.frozen import frozen
@@ -47,23 +50,92 @@ class Counted:
         leaves: place -> places of the net before for which it stands.
         total: the tokens in a marking; of places with several leaves, the most that they can be.
         sums: the tokens of the places that are gone, likewise.
+        units: sets of places of which one at most is marked, with one token.
+        level: place -> the place that diagrams have for it, and its value there; 0: a place of its own.
+        drawn: the net that diagrams have: a unit is one place, from which an arc takes a value.
     """
 
     tables: Tables
     leaves: tuple[int, ...]
     total: Affine
     sums: tuple[Affine, ...]
+    units: tuple[tuple[int, ...], ...]
+    level: Mapping[int, tuple[int, int]]
+    drawn: Tables
+
+    @staticmethod
+    def of(
+        tables: Tables,
+        leaves: tuple[int, ...],
+        total: Affine,
+        sums: tuple[Affine, ...],
+        units: tuple[tuple[int, ...], ...] = (),
+    ) -> Counted:
+        """As above."""
+        level = {p: (i, v) for i, unit in enumerate(units) for v, p in enumerate(unit, 1)}
+        alone = [p for p in range(len(leaves)) if p not in level]
+        level |= {p: (i, 0) for i, p in enumerate(alone, len(units))}
+        drawn = _drawn(tables, level, len(units) + len(alone))
+        return Counted(tables, leaves, total, sums, units, level, drawn)
+
+    def without_units(self) -> Counted:
+        """The same with a place of its own for each place."""
+        return Counted.of(self.tables, self.leaves, self.total, self.sums)
 
     def text(self, order: Sequence[int]) -> str:
-        """The net with the sums as questions: the first one is about the marking, the others about places."""
+        """The net of diagrams with the sums as questions: first that of the marking, then those of places.
+
+        Args:
+            order: of the places of `drawn`.
+        """
         asked = [
-            f"{i} bound sum {len(s.factors)} "
-            + "".join(f"{p} {n} " for p, n in s.factors.items())
-            + str(-s.constant)
+            f"{i} bound {self._terms(s)} {-s.constant}"
             for i, s in enumerate((self.total, *self.sums))
         ]
-        text = self.tables.text(asked, order)
-        return text + f"leaves {' '.join(map(str, self.leaves))}\n"
+        text = self.drawn.text(asked, order)
+        leaves = [1] * len(self.drawn.initial)
+        for p, (at, value) in self.level.items():
+            leaves[at] = 1 if value else self.leaves[p]
+        text += f"leaves {' '.join(map(str, leaves))}\nexact {len(self.units)}\n"
+        for i, unit in enumerate(self.units):
+            text += f"{i} {len(unit)} {' '.join(str(self.leaves[p]) for p in unit)}\n"
+        return text
+
+    def _terms(self, sum_: Affine) -> str:
+        """A term for each place, of a unit for each of its values in turn, if any of them counts."""
+        used = {self.level[p][0] for p in sum_.factors}
+        terms = []
+        for i, unit in enumerate(self.units):
+            if i in used:
+                terms += [f"{i} {sum_.factors.get(p, 0)}" for p in unit]
+        for p, n in sum_.factors.items():
+            at, value = self.level[p]
+            terms += [] if value else [f"{at} {n}"]
+        return " ".join(["sum", str(len(terms)), *terms])
+
+
+def _drawn(tables: Tables, level: Mapping[int, tuple[int, int]], places: int) -> Tables:
+    initial = [0] * places
+    for p, tokens in enumerate(tables.initial):
+        at, value = level[p]
+        initial[at] += value * tokens if value else tokens
+    found = []
+    for pre, post in zip(tables.pre, tables.post, strict=True):
+        taken, put = _valued(pre, level), _valued(post, level)
+        if taken is not None and put is not None:
+            found.append((taken, put))
+    return Tables(tuple(initial), tuple(a for a, _ in found), tuple(b for _, b in found), {}, {})
+
+
+def _valued(arcs: Mapping[int, int], level: Mapping[int, tuple[int, int]]) -> dict[int, int] | None:
+    """Arcs in values; None: the transition is dead, since it needs, or makes, two tokens in a unit."""
+    found: dict[int, int] = {}
+    for p, n in arcs.items():
+        at, value = level[p]
+        if value and (n > 1 or at in found):
+            return None
+        found[at] = value or n
+    return found
 
 
 def smaller(tables: Tables, until: float) -> Counted | None:
@@ -314,7 +386,8 @@ class _Counting:
         ):
             return None
         leaves = tuple(len(self.leaves[p]) for p in self.net.marking)
-        return Counted(tables, leaves, total, tuple(made))
+        units = units_of(tables, self.until)
+        return Counted.of(tables, leaves, total, tuple(made), units)
 
     def _values(self) -> list[Affine]:
         """The tokens of each place, in those of leaves that are still there; the last ones to go come first."""
@@ -404,3 +477,84 @@ class _Sums:
             return None
         rounded = np.rint(found.x).astype(int)
         return {i: int(rounded[i]) for i in np.flatnonzero(rounded).tolist()}
+
+
+def units_of(tables: Tables, until: float) -> tuple[tuple[int, ...], ...]:
+    """Disjoint sets of places of which invariants say that one at most is marked, with one token; large ones first."""
+    places = len(tables.initial)
+    arcs = sum(map(len, tables.pre)) + sum(map(len, tables.post))
+    found: list[set[int]] = []
+    open_ = {p for p in range(places) if tables.initial[p] <= 1}
+    if places and arcs <= MOST_ARCS:
+        rows = {
+            frozenset((p, post.get(p, 0) - pre.get(p, 0)) for p in {*pre, *post})
+            for pre, post in zip(tables.pre, tables.post, strict=True)
+        }
+        changes = [{p: n for p, n in row if n} for row in rows]
+        programs = _Invariants(tables.initial, [row for row in changes if row], until)
+        while open_:
+            unit = programs.with_most(open_)
+            if unit is None or not unit & open_:
+                break
+            found.append(unit)
+            open_ -= unit
+    units: list[tuple[int, ...]] = []
+    while found:
+        largest = max(found, key=len)
+        if len(largest) > 1:
+            units.append(tuple(sorted(largest)))
+        found = [rest for unit in found if (rest := unit - largest)]
+    return tuple(units)
+
+
+class _Invariants:
+    """Sets of places that hold one token together, by linear programs.
+
+    Args:
+        initial: the initial marking.
+        changes: what transitions change.
+        until: when to stop, on the monotonic clock.
+    """
+
+    def __init__(
+        self, initial: Sequence[int], changes: Sequence[dict[int, int]], until: float
+    ) -> None:
+        self.until = until
+        self.changes = changes
+        self.initial = np.array(initial, dtype=float)
+        at = np.array([(i, p) for i, row in enumerate(changes) for p in row]).reshape(-1, 2)
+        numbers = np.array([n for row in changes for n in row.values()], dtype=float)
+        shape = (len(changes) + 1, len(initial))
+        marked = csr_array(self.initial.reshape(1, -1))
+        self.equal = vstack(
+            [csr_array((numbers, tuple(at.T)), shape=(shape[0] - 1, shape[1])), marked]
+        ).tocsc()
+
+    def with_most(self, wanted: set[int]) -> set[int] | None:
+        """One with as many of some places as possible; None: there is none, or the time is over."""
+        from scipy.optimize import linprog  # takes long to load
+
+        left = self.until - time.monotonic()
+        if left <= 0:
+            return None
+        cost = np.array([-1.0 if p in wanted else 0.0 for p in range(len(self.initial))])
+        right = np.zeros(self.equal.shape[0])
+        right[-1] = 1.0
+        found = linprog(
+            cost,
+            A_eq=self.equal,
+            b_eq=right,
+            bounds=(0, 1),
+            method="highs",
+            options={"time_limit": left},
+        )
+        if found.x is None or found.status:
+            return None
+        unit = set(np.flatnonzero(np.rint(found.x)).tolist())
+        return unit if self._is_one(unit) else None
+
+    def _is_one(self, unit: set[int]) -> bool:
+        """In integers: they hold one token at first, and no transition changes how many they hold."""
+        return sum(int(self.initial[p]) for p in unit) == 1 and not any(
+            sum(n for p, n in row.items() if p in unit) for row in self.changes
+        )

@@ -36,43 +36,52 @@ class Diagrams:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.lock = threading.Lock()
-        self.counted: Counted | None = None
         self.is_tried = False
+        self.counted: Counted | None = None
+        """The net made smaller to be counted, once that was tried."""
+        self.texts: list[str] | None = None
 
     @cached_property
     def orders(self) -> list[list[int]]:
         """The most promising one first."""
         return orders(len(self.tables.initial), self.tables.pre, self.tables.post)
 
-    def smaller(self, until: float) -> Counted | None:
-        """The net for counting, made smaller once; None: it is not to be had."""
-        if not self.is_tried:
-            self.is_tried = True
-            self.counted = smaller(self.tables, until)
-            if self.counted is not None:
-                t = self.counted.tables
-                self.orders = orders(len(t.initial), t.pre, t.post)
-        return self.counted
-
     def sizes(self, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
 
-        Each order has a short time at first; the most promising two have what is left. The net is made smaller, and
-        the orders are made, when the first lane asks for a task, since this takes long for large nets.
+        Each order has a short time at first; the most promising two have what is left. Where places were put together
+        as units, the first lane has these, the second one all places by themselves. The net is made smaller, and the
+        orders are made, when the first lane asks for a task, since this takes long for large nets.
         """
         ends = time.monotonic() + seconds
         return [self._lane(which, ends, mebibytes) for which in range(2)]
 
     def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
         with self.lock:
-            now = time.monotonic()
-            counted = self.smaller(now + _MAKING * (ends - now))
-            orders = self.orders
+            row = self._row(which, ends)[:3]
         shares: tuple[float, ...]
-        row, shares = orders[which : which + 1], (1.0,)
-        if len(orders) > 2:
-            row, shares = [*orders[which::2][:3], orders[which]], _SHARES
+        shares = (1.0,)
+        if len(row) > 1:
+            row, shares = [*row, row[0]], _SHARES
         seconds = max(0.0, ends - time.monotonic())
-        for order, share in zip(row, shares[len(shares) - len(row) :], strict=True):
-            text = self.tables.text([], order) if counted is None else counted.text(order)
+        for text, share in zip(row, shares[len(shares) - len(row) :], strict=True):
             yield Task("sizes", text, share * seconds, mebibytes)
+
+    def _row(self, which: int, ends: float) -> list[str]:
+        """The texts of a lane, the most promising ones first."""
+        if not self.is_tried:
+            now = time.monotonic()
+            self.counted = smaller(self.tables, now + _MAKING * (ends - now))
+            self.is_tried = True
+        if self.counted is None:
+            return [self.tables.text([], order) for order in self.orders[which::2]]
+        if self.counted.units:
+            return _texts(self.counted if which == 0 else self.counted.without_units())
+        if self.texts is None:
+            self.texts = _texts(self.counted)
+        return self.texts[which::2]
+
+
+def _texts(counted: Counted) -> list[str]:
+    t = counted.drawn
+    return [counted.text(order) for order in orders(len(t.initial), t.pre, t.post)]
