@@ -39,6 +39,8 @@ MOST_ARCS = 200_000
 _MOST_FACTOR = 1_000_000_000
 """What the engine reads."""
 _CANDIDATES = 8
+_REDUCING = 0.6
+"""Of the time; what is left is for units."""
 
 
 @frozen
@@ -163,6 +165,8 @@ class _Counting:
     def __init__(self, tables: Tables, until: float) -> None:
         self.tables = tables
         self.until = until
+        now = time.monotonic()
+        self.until_reduced = now + _REDUCING * (until - now)
         self.net = Net(tables, (), Goal.STEPS)
         self.leaves = {p: [p] for p in self.net.marking}
         self.gone: dict[int, Affine] = {}
@@ -174,7 +178,7 @@ class _Counting:
         dead_transitions(self.net)
         self._put_idle_aside(list(self.net.pre))
         changed = True
-        while changed and time.monotonic() < self.until:
+        while changed and time.monotonic() < self.until_reduced:
             changed = any([self._constant(), self._proportional(), self._loops(), self._chains()])
             if not changed:
                 changed = self._implied()
@@ -256,7 +260,7 @@ class _Counting:
         rows = {frozenset(net.effect(t).items()) for t in net.pre}
         if not rows:
             return False
-        programs = _Sums(places, [{column[p]: n for p, n in row} for row in rows], self.until)
+        programs = _Sums(places, [{column[p]: n for p, n in row} for row in rows], self.until_reduced)
         removed = False
         for p in places:
             if len(self.leaves[p]) > 1:
@@ -492,12 +496,17 @@ def units_of(tables: Tables, until: float) -> tuple[tuple[int, ...], ...]:
         }
         changes = [{p: n for p, n in row if n} for row in rows]
         programs = _Invariants(tables.initial, [row for row in changes if row], until)
-        while open_:
-            unit = programs.with_most(open_)
-            if unit is None or not unit & open_:
-                break
-            found.append(unit)
-            open_ -= unit
+        is_common = True  # a program for all places that are open; then for one after the other
+        while open_ and time.monotonic() < until:
+            wanted = open_ if is_common else {min(open_)}
+            unit = programs.with_most(wanted)
+            if unit is not None and unit & wanted:
+                found.append(unit)
+                open_ -= unit
+            elif is_common:
+                is_common = False
+            else:
+                open_ -= wanted
     units: list[tuple[int, ...]] = []
     while found:
         largest = max(found, key=len)
@@ -544,7 +553,7 @@ class _Invariants:
             cost,
             A_eq=self.equal,
             b_eq=right,
-            bounds=(0, 1),
+            bounds=(0, None),  # the corners are invariants that contain no other one
             method="highs",
             options={"time_limit": left},
         )
