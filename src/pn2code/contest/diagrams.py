@@ -26,7 +26,7 @@ KINDS = ("reach", "bound", "ctl", "ltl")
 
 _SHARES = (0.1, 0.15, 0.15, 0.6)
 """Of the time, for one order after the other where there are several."""
-_MAKING = 0.1
+_MAKING = 0.2
 """Of the time, to make the net smaller before its markings are counted."""
 
 
