@@ -260,7 +260,9 @@ class _Counting:
         rows = {frozenset(net.effect(t).items()) for t in net.pre}
         if not rows:
             return False
-        programs = _Sums(places, [{column[p]: n for p, n in row} for row in rows], self.until_reduced)
+        programs = _Sums(
+            places, [{column[p]: n for p, n in row} for row in rows], self.until_reduced
+        )
         removed = False
         for p in places:
             if len(self.leaves[p]) > 1:
