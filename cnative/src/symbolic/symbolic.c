@@ -26,15 +26,10 @@ typedef struct run {
 
 static void answer_bound(run_t *r, tb_question_t *q)
 {
-    int64_t *factor = tb_new((size_t)r->d.levels + 1U, sizeof *factor);
     int64_t bound = 0;
-    for (uint32_t i = 0U; i < q->formula->count; i++) {
-        factor[r->d.level[q->formula->term[i].place]] += q->formula->term[i].factor;
-    }
-    if (sy_largest(&r->frozen, factor, &bound)) {
+    if (sy_largest_of(&r->d, &r->frozen, q->formula, &bound)) {
         tb_say_bound(q, bound, true, METHOD);
     }
-    tb_free(factor, (size_t)r->d.levels + 1U, sizeof *factor);
 }
 
 static void answer(run_t *r, tb_question_t *q)
@@ -96,13 +91,14 @@ static void *work(void *argument)
 {
     run_t *r = argument;
     sy_init(&r->d, &r->job->net, r->job->order);
+    r->d.exact = r->job->exact;
     if (setjmp(r->d.given_up) != 0) {
         tb_fail(TB_EXIT_TIME, "time is over");
     }
     sy_make_events(&r->d);
     find_space(r);
     if (r->is_sizes) {
-        sy_say_sizes(&r->d, &r->frozen);
+        sy_say_sizes(&r->d, &r->frozen, r->job);
     } else {
         answer_all(r, TB_BOUND);
         answer_all(r, TB_REACH);

@@ -41,10 +41,11 @@ typedef struct sy_result {
     sy_node_t node;
 } sy_result_t;
 
-/* A place on a path: with at least `take` tokens there are `change` more after the transition. */
+/* A place on a path: with at least `take` tokens, and at most `most`, there are `change` more after the transition. */
 typedef struct sy_step {
     uint32_t level;
     tb_count_t take;
+    tb_count_t most;
     int64_t change;
     sy_path_t rest;
 } sy_step_t;
@@ -63,6 +64,7 @@ typedef struct sy_events {
 
 typedef struct sy_diagrams {
     const tb_net_t *net;
+    uint32_t *const *exact; /* of the job */
     uint32_t levels;
     uint32_t *place; /* level -> place; levels begin with 1 */
     uint32_t *level; /* place -> level */
@@ -104,6 +106,18 @@ enum { SY_EDGE = 2, SY_MAKING = 3 /* words of an edge in the pool, and of one in
 
 void sy_init(sy_diagrams_t *d, const tb_net_t *net, const uint32_t *order);
 _Noreturn void sy_give_up(sy_diagrams_t *d);
+
+/* NULL: the place of a level holds tokens; otherwise how many values it may have, and leaves by value. */
+static inline const uint32_t *sy_exact(const sy_diagrams_t *d, uint32_t level)
+{
+    return ((d->exact != NULL) && (level > 0U)) ? d->exact[d->place[level]] : NULL;
+}
+
+/* Whether a step may be made with so many tokens. */
+static inline bool sy_permits(const sy_step_t *s, tb_count_t tokens)
+{
+    return (tokens >= s->take) && (tokens <= s->most);
+}
 
 static inline uint32_t sy_level(const sy_diagrams_t *d, sy_node_t n)
 {
@@ -178,8 +192,11 @@ void sy_freeze(sy_diagrams_t *d, sy_node_t n, sy_frozen_t *f);
 void sy_unfreeze(const sy_diagrams_t *d, sy_frozen_t *f);
 /* The largest sum of factor * tokens, by level; false: it is too large. */
 bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum);
-/* Print the numbers of markings and arcs, and the most tokens in a place and in a marking. */
-void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f);
+/* The same of a formula; what an exact place adds depends on its value. */
+bool sy_largest_of(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_formula_t *sum, int64_t *most);
+/* Print the numbers of markings and arcs, and the most tokens in a place and in a marking. Bounds that are asked say of
+ * a net that was made smaller what a marking (the first) and further places (the others) hold, less their limits. */
+void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job);
 
 /* --- formulas (symbolic_formula.c) -------------------------------------------------------------------------------- */
 

@@ -66,6 +66,7 @@ typedef struct paths {
 static uint32_t slot_of(const paths_t *p, const sy_step_t *s)
 {
     uint64_t h = ((uint64_t)s->level * 0x9E3779B97F4A7C15U) ^ s->take;
+    h = (h * 0x9E3779B97F4A7C15U) ^ s->most;
     h = (h * 0x9E3779B97F4A7C15U) ^ (uint64_t)s->change;
     h = (h * 0x9E3779B97F4A7C15U) ^ s->rest;
     h *= 0x9E3779B97F4A7C15U;
@@ -78,8 +79,8 @@ static sy_path_t step(paths_t *p, sy_step_t s)
     uint32_t at = slot_of(p, &s);
     while (p->slot[at] != 0U) {
         const sy_step_t *known = &d->step[p->slot[at]];
-        if ((known->level == s.level) && (known->take == s.take) && (known->change == s.change)
-            && (known->rest == s.rest)) {
+        if ((known->level == s.level) && (known->take == s.take) && (known->most == s.most)
+            && (known->change == s.change) && (known->rest == s.rest)) {
             return p->slot[at];
         }
         at = (at + 1U) & (p->slots - 1U);
@@ -100,7 +101,8 @@ static sy_path_t path(paths_t *p, const effects_t *e, direction_t direction)
         const int64_t change = (direction == TEST) ? 0 : ((int64_t)f->put - (int64_t)f->take);
         const tb_count_t take = (direction == BACKWARDS) ? f->put : f->take;
         if ((take > 0U) || (change != 0)) {
-            const sy_step_t s = { f->level, take, (direction == BACKWARDS) ? -change : change, rest };
+            const tb_count_t most = (sy_exact(p->d, f->level) != NULL) ? take : UINT32_MAX;
+            const sy_step_t s = { f->level, take, most, (direction == BACKWARDS) ? -change : change, rest };
             rest = step(p, s);
         }
     }

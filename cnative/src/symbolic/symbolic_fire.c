@@ -90,13 +90,13 @@ static void fire_edges(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_n
                        uint64_t begun, uint32_t level)
 {
     const sy_step_t s = d->step[path];
-    const sy_step_t skip = { level, 0U, 0, path };
+    const sy_step_t skip = { level, 0U, UINT32_MAX, 0, path };
     const sy_step_t *here = (s.level == level) ? &s : &skip;
     const bool is_node = sy_level(d, n) == level;
     const uint32_t count = is_node ? sy_count(d, n) : 1U;
     for (uint32_t i = 0U; i < count; i++) {
         const tb_count_t tokens = is_node ? sy_tokens(d, n, i) : 0U;
-        if (tokens < here->take) {
+        if (!sy_permits(here, tokens)) {
             continue;
         }
         const tb_count_t then = after(here, tokens);
@@ -156,7 +156,7 @@ static void step_from(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, ui
     add(d, begun, tokens, sy_step_of_all(d, e, child, sy_below(d, within, level, tokens)));
     for (uint32_t i = e->first[level]; i < e->first[level + 1U]; i++) {
         const sy_step_t s = d->step[e->event[i]];
-        if (tokens >= s.take) {
+        if (sy_permits(&s, tokens)) {
             const tb_count_t then = after(&s, tokens);
             add(d, begun, then, sy_fire(d, child, sy_below(d, within, level, then), s.rest));
         }
@@ -196,7 +196,7 @@ static void fire_from(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, ui
 {
     for (uint32_t i = e->first[level]; i < e->first[level + 1U]; i++) {
         const sy_step_t s = d->step[e->event[i]];
-        if (tokens < s.take) {
+        if (!sy_permits(&s, tokens)) {
             continue;
         }
         const tb_count_t then = after(&s, tokens);

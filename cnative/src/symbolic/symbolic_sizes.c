@@ -128,7 +128,22 @@ void sy_unfreeze(const sy_diagrams_t *d, sy_frozen_t *f)
 
 /* --- sums --------------------------------------------------------------------------------------------------------- */
 
-bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
+/* By level a factor, or what each value adds. */
+typedef struct factors {
+    const int64_t *factor;
+    int64_t **added; /* NULL: there are factors only */
+} factors_t;
+
+static bool product_of(const factors_t *f, uint32_t level, tb_count_t tokens, int64_t *product)
+{
+    if ((f->added != NULL) && (f->added[level] != NULL)) {
+        *product = f->added[level][tokens];
+        return true;
+    }
+    return !__builtin_mul_overflow(f->factor[level], (int64_t)tokens, product);
+}
+
+static bool largest(const sy_frozen_t *f, const factors_t *of, int64_t *sum)
 {
     int64_t *best = tb_new(f->nodes, sizeof *best);
     bool is_small = true;
@@ -136,13 +151,49 @@ bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
         best[i] = INT64_MIN;
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
             int64_t all;
-            is_small = is_small && !__builtin_mul_overflow(factor[f->level[i]], (int64_t)f->tokens[e], &all)
+            is_small = is_small && product_of(of, f->level[i], f->tokens[e], &all)
                        && !__builtin_add_overflow(all, best[f->child[e]], &all);
             best[i] = (is_small && (all > best[i])) ? all : best[i];
         }
     }
     *sum = best[f->nodes - 1U];
     tb_free(best, f->nodes, sizeof *best);
+    return is_small;
+}
+
+bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
+{
+    const factors_t of = { factor, NULL };
+    return largest(f, &of, sum);
+}
+
+/* The terms of an exact place are for its values, one after the other. */
+bool sy_largest_of(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_formula_t *sum, int64_t *most)
+{
+    const size_t levels = (size_t)d->levels + 1U;
+    int64_t *factor = tb_new(levels, sizeof *factor);
+    int64_t **added = tb_new(levels, sizeof *added);
+    uint32_t *terms = tb_new(levels, sizeof *terms);
+    for (uint32_t i = 0U; i < sum->count; i++) {
+        const uint32_t level = d->level[sum->term[i].place];
+        const uint32_t *exact = sy_exact(d, level);
+        if (exact == NULL) {
+            factor[level] += sum->term[i].factor;
+        } else {
+            added[level] = (added[level] != NULL) ? added[level] : tb_new((size_t)exact[0] + 1U, sizeof **added);
+            terms[level] += (terms[level] < exact[0]) ? 1U : 0U;
+            added[level][terms[level]] = sum->term[i].factor;
+        }
+    }
+    const factors_t of = { factor, added };
+    const bool is_small = largest(f, &of, most);
+    for (uint32_t level = 1U; level <= d->levels; level++) {
+        const uint32_t *exact = sy_exact(d, level);
+        tb_free(added[level], (exact != NULL) ? ((size_t)exact[0] + 1U) : 0U, sizeof **added);
+    }
+    tb_free(factor, levels, sizeof *factor);
+    tb_free(added, levels, sizeof *added);
+    tb_free(terms, levels, sizeof *terms);
     return is_small;
 }
 
@@ -200,11 +251,51 @@ static void print(uint64_t *a, uint32_t words)
     tb_free(part, ((size_t)words * 3U) + 1U, sizeof *part);
 }
 
+/* --- ways to divide tokens among leaves --------------------------------------------------------------------------- */
+
+/* The ways to divide up to so many tokens among a number of leaves. */
+typedef struct ways {
+    uint32_t leaves; /* 1: there is one way, and no table */
+    tb_count_t most;
+    uint64_t *table; /* tokens -> ways, a number each */
+    struct ways *next;
+} ways_t;
+
+static double log2_of_ways(uint32_t leaves, tb_count_t tokens)
+{
+    if ((leaves == 1U) || (tokens == 0U)) {
+        return 0.0;
+    }
+    const double n = (double)leaves;
+    const double k = (double)tokens;
+    const double nats = lgamma(k + n) - lgamma(k + 1.0) - lgamma(n);
+    return ((nats / log(2.0)) + (1e-9 * (k + n) * log2(k + n))) + 1e-6; /* rounded up */
+}
+
+/* With one leaf more the ways are the sums of those with fewer tokens. */
+static void tabulate(ways_t *w, uint32_t words)
+{
+    w->table = tb_new(((size_t)w->most + 1U) * words, sizeof *w->table);
+    for (tb_count_t k = 0U; k <= w->most; k++) {
+        w->table[(size_t)k * words] = 1U;
+    }
+    for (uint32_t n = 1U; n < w->leaves; n++) {
+        for (tb_count_t k = 1U; k <= w->most; k++) {
+            plus(&w->table[(size_t)k * words], &w->table[(size_t)(k - 1U) * words], words);
+        }
+        if (tb_is_over()) {
+            tb_fail(TB_EXIT_TIME, "time is over");
+        }
+    }
+}
+
 /* --- counting ----------------------------------------------------------------------------------------------------- */
 
 typedef struct counting {
     const sy_diagrams_t *d;
     const sy_frozen_t *f;
+    const ways_t **ways; /* level -> how tokens are divided there */
+    ways_t *all_ways;
     uint32_t words;    /* of a number */
     uint64_t *below;   /* node -> markings from there downwards */
     uint64_t *above;   /* node -> ways from the root to it */
@@ -213,24 +304,98 @@ typedef struct counting {
     uint64_t *zero;
 } counting_t;
 
-/* How many bits the number of markings has at most: sums of numbers with exponents of their own, rounded up. */
-static double bits(const sy_frozen_t *f)
+static uint32_t leaves_at(const sy_diagrams_t *d, const tb_job_t *job, uint32_t level)
 {
-    double *log = tb_new(f->nodes, sizeof *log);
+    return ((job->leaves != NULL) && (level > 0U)) ? job->leaves[d->place[level]] : 1U;
+}
+
+/* How many bits the number of markings has at most: sums of numbers with exponents of their own, rounded up. */
+static double bits(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job)
+{
+    double *exponent = tb_new(f->nodes, sizeof *exponent);
+    double *of_edge = tb_new(f->all_edges, sizeof *of_edge);
     for (uint32_t i = 1U; i < f->nodes; i++) {
         double most = 0.0;
         double sum = 0.0;
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
-            most = (log[f->child[e]] > most) ? log[f->child[e]] : most;
+            const uint32_t *exact = sy_exact(d, f->level[i]);
+            const double ways = (exact != NULL) ? log2((double)((f->tokens[e] > 0U) ? exact[f->tokens[e]] : 1U))
+                                                : log2_of_ways(leaves_at(d, job, f->level[i]), f->tokens[e]);
+            of_edge[e] = exponent[f->child[e]] + ways;
+            most = (of_edge[e] > most) ? of_edge[e] : most;
         }
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
-            sum += exp2(log[f->child[e]] - most);
+            sum += exp2(of_edge[e] - most);
         }
-        log[i] = (most + log2(sum)) * (1.0 + 1e-15) + 1e-12;
+        exponent[i] = (most + log2(sum)) * (1.0 + 1e-15) + 1e-12;
     }
-    const double found = log[f->nodes - 1U];
-    tb_free(log, f->nodes, sizeof *log);
+    const double found = exponent[f->nodes - 1U];
+    tb_free(exponent, f->nodes, sizeof *exponent);
+    tb_free(of_edge, f->all_edges, sizeof *of_edge);
     return found;
+}
+
+/* Levels with as many leaves have a table in common. */
+static void find_ways(counting_t *c, const tb_job_t *job)
+{
+    const sy_diagrams_t *d = c->d;
+    c->ways = tb_new((size_t)d->levels + 1U, sizeof(ways_t *));
+    for (uint32_t level = 1U; level <= d->levels; level++) {
+        const uint32_t leaves = leaves_at(d, job, level);
+        ways_t *w = c->all_ways;
+        while ((w != NULL) && (w->leaves != leaves)) {
+            w = w->next;
+        }
+        if (w == NULL) {
+            w = tb_new(1U, sizeof *w);
+            w->leaves = leaves;
+            w->next = c->all_ways;
+            c->all_ways = w;
+        }
+        w->most = (d->most[level] > w->most) ? d->most[level] : w->most;
+        c->ways[level] = w;
+    }
+    for (ways_t *w = c->all_ways; w != NULL; w = w->next) {
+        if (w->leaves > 1U) {
+            tabulate(w, c->words);
+        }
+    }
+}
+
+static void forget_ways(counting_t *c)
+{
+    while (c->all_ways != NULL) {
+        ways_t *w = c->all_ways;
+        c->all_ways = w->next;
+        tb_free(w->table, (w->leaves > 1U) ? (((size_t)w->most + 1U) * c->words) : 0U, sizeof *w->table);
+        tb_free(w, 1U, sizeof *w);
+    }
+    tb_free(c->ways, (size_t)c->d->levels + 1U, sizeof(ways_t *));
+}
+
+/* sum += number * factor */
+static void plus_times(uint64_t *sum, const uint64_t *number, uint32_t factor, uint32_t words)
+{
+    uint64_t carry = 0U;
+    for (uint32_t i = 0U; i < words; i++) {
+        __extension__ const unsigned __int128 p = ((unsigned __int128)number[i] * factor) + sum[i] + carry;
+        sum[i] = (uint64_t)p;
+        carry = (uint64_t)(p >> (uint32_t)WORD_BITS);
+    }
+}
+
+/* sum += number * ways to divide tokens at a level; 0 tokens: where they are is known */
+static void plus_ways(const counting_t *c, uint64_t *sum, const uint64_t *number, uint32_t level, tb_count_t tokens)
+{
+    const ways_t *w = c->ways[level];
+    const uint32_t *exact = sy_exact(c->d, level);
+    if ((exact != NULL) && (tokens > 0U)) {
+        plus_times(sum, number, exact[tokens], c->words);
+    } else if ((w->leaves == 1U) || (tokens == 0U)) {
+        plus(sum, number, c->words);
+    } else {
+        plus_product(sum, &w->table[(size_t)tokens * c->words], number, c->words);
+    }
 }
 
 static uint64_t *of_node(const counting_t *c, uint64_t *numbers, uint32_t node)
@@ -244,7 +409,7 @@ static void count_below(counting_t *c)
     c->below[0] = 1U;
     for (uint32_t i = 1U; i < f->nodes; i++) {
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
-            plus(of_node(c, c->below, i), of_node(c, c->below, f->child[e]), c->words);
+            plus_ways(c, of_node(c, c->below, i), of_node(c, c->below, f->child[e]), f->level[i], f->tokens[e]);
         }
     }
 }
@@ -255,7 +420,7 @@ static void count_above(counting_t *c)
     c->above[(uint64_t)(f->nodes - 1U) * c->words] = 1U;
     for (uint32_t i = f->nodes - 1U; i > 0U; i--) {
         for (uint64_t e = f->first[i]; e < f->first[i + 1U]; e++) {
-            plus(of_node(c, c->above, f->child[e]), of_node(c, c->above, i), c->words);
+            plus_ways(c, of_node(c, c->above, f->child[e]), of_node(c, c->above, i), f->level[i], f->tokens[e]);
         }
     }
 }
@@ -279,8 +444,9 @@ static const uint64_t *count_enabled(counting_t *c, uint32_t node, sy_path_t pat
     (void)memset(sum, 0, c->words * sizeof *sum);
     const bool is_here = f->level[node] == s->level;
     for (uint64_t e = f->first[node]; e < f->first[node + 1U]; e++) {
-        if (!is_here || (f->tokens[e] >= s->take)) {
-            plus(sum, count_enabled(c, f->child[e], is_here ? s->rest : path, transition), c->words);
+        if (!is_here || sy_permits(s, f->tokens[e])) {
+            const uint64_t *child = count_enabled(c, f->child[e], is_here ? s->rest : path, transition);
+            plus_ways(c, sum, child, f->level[node], f->tokens[e] - (is_here ? s->take : 0U));
         }
     }
     if (tb_is_over()) {
@@ -306,31 +472,44 @@ static void count_arcs(counting_t *c, uint64_t *arcs)
     }
 }
 
-static void print_tokens(const sy_diagrams_t *d, const sy_frozen_t *f)
+static void print_tokens(const sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job)
 {
     int64_t *factor = tb_new((size_t)d->levels + 1U, sizeof *factor);
     int64_t in_marking = 0;
-    tb_count_t in_place = 0U;
+    int64_t in_place = 0;
     for (uint32_t l = 1U; l <= d->levels; l++) {
         factor[l] = 1;
-        in_place = (d->most[l] > in_place) ? d->most[l] : in_place;
+        const bool is_value = (sy_exact(d, l) != NULL) && (d->most[l] > 0U);
+        const int64_t most = is_value ? 1 : (int64_t)d->most[l];
+        in_place = (most > in_place) ? most : in_place;
     }
-    (void)sy_largest(f, factor, &in_marking); /* at most 2^32 places with 2^30 tokens */
-    (void)printf(" %" PRIu32 " %" PRId64 "\n", in_place, in_marking);
+    bool is_small = sy_largest(f, factor, &in_marking); /* at most 2^32 places with 2^30 tokens */
+    for (uint32_t i = 0U; is_small && (i < job->questions); i++) {
+        const tb_formula_t *sum = job->question[i].formula;
+        int64_t most = 0;
+        is_small = sy_largest_of(d, f, sum, &most) && !__builtin_sub_overflow(most, sum->limit, &most);
+        in_marking = (i == 0U) ? most : in_marking;
+        in_place = ((i > 0U) && (most > in_place)) ? most : in_place;
+    }
+    if (!is_small) {
+        tb_fail(TB_EXIT_MEMORY, "a sum is too large");
+    }
+    (void)printf(" %" PRId64 " %" PRId64 "\n", in_place, in_marking);
     (void)fflush(stdout);
     tb_free(factor, (size_t)d->levels + 1U, sizeof *factor);
 }
 
-void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f)
+void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job)
 {
-    const double all = bits(f) + log2((double)d->net->transitions + 1.0) + 2.0;
-    counting_t c = { d, f, 1U + (uint32_t)(all / (double)WORD_BITS), NULL, NULL, NULL, NULL, NULL };
+    const double all = bits(d, f, job) + log2((double)d->net->transitions + 1.0) + 2.0;
+    counting_t c = { .d = d, .f = f, .words = 1U + (uint32_t)(all / (double)WORD_BITS) };
     const uint64_t numbers = (uint64_t)f->nodes * c.words;
     c.below = tb_new(numbers, sizeof(uint64_t));
     c.above = tb_new(numbers, sizeof(uint64_t));
     c.enabled = tb_new(numbers, sizeof(uint64_t));
     c.of = tb_new(f->nodes, sizeof *c.of);
     c.zero = tb_new(c.words, sizeof(uint64_t));
+    find_ways(&c, job);
     uint64_t *arcs = tb_new(c.words, sizeof *arcs);
     count_below(&c);
     count_above(&c);
@@ -338,7 +517,8 @@ void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f)
     (void)printf("sizes");
     print(of_node(&c, c.below, f->nodes - 1U), c.words);
     print(arcs, c.words);
-    print_tokens(d, f);
+    print_tokens(d, f, job);
+    forget_ways(&c);
     tb_free(c.below, numbers, sizeof(uint64_t));
     tb_free(c.above, numbers, sizeof(uint64_t));
     tb_free(c.enabled, numbers, sizeof(uint64_t));

@@ -122,7 +122,9 @@ typedef struct tb_job {
     tb_net_t net;
     tb_question_t *question;
     uint32_t questions;
-    uint32_t *order; /* all places, from the top of a diagram downwards; NULL: none is given */
+    uint32_t *order;  /* all places, from the top of a diagram downwards; NULL: none is given */
+    uint32_t *leaves; /* place -> places that share its tokens in each possible way, for `sizes`; NULL: one each */
+    uint32_t **exact; /* place -> NULL, or how many values it may have, and leaves by value; NULL: there is none */
 } tb_job_t;
 
 /* Read a job from a file; an error ends the program with a message. */

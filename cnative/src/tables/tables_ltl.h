@@ -9,10 +9,10 @@
 typedef struct tb_pair {
     uint32_t marking;
     uint32_t state;
-    uint32_t index;   /* on the path or in one of its components: when it was met, from 1; 0: left for good */
-    uint32_t hunt;    /* the last search for a way back that has met it */
-    bool is_entered;  /* by the search depth first */
-    bool is_awaited;  /* or by the hunt */
+    uint32_t index;  /* on the path or in one of its components: when it was met, from 1; 0: left for good */
+    uint32_t hunt;   /* the last search for a way back that has met it */
+    bool is_entered; /* by the search depth first */
+    bool is_awaited; /* or by the hunt */
 } tb_pair_t;
 
 typedef struct tb_path_step {

@@ -21,14 +21,14 @@ static const double A_MOVE = 1000.0; /* as far as so many tokens */
 
 typedef struct hunt {
     tb_product_t *product;
-    double *left;       /* state -> moves to an accepting one */
+    double *left; /* state -> moves to an accepting one */
     tb_heap_t waiting;
     tb_heap_t back;
     tb_count_t *goal;
     tb_count_t *other;
     uint32_t round;
-    uint64_t met;       /* by the hunt */
-    uint64_t met_back;  /* by searches for ways back */
+    uint64_t met;      /* by the hunt */
+    uint64_t met_back; /* by searches for ways back */
     uint64_t budget;
     uint32_t tries;
 } hunt_t;

@@ -9,6 +9,9 @@
  *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
  *         guided N (transition times).. and one of them: a guess how the formula may become true, for walks
  *     order, and all places, from the top of a diagram downwards: where diagrams are wanted
+ *     leaves, and for each place how many share its tokens in each possible way: where a net was made smaller, to count
+ *     exact N (place values leaves..)..: places whose tokens are a value, or 0; an arc needs that value, and puts one;
+ *         a sum has a term for each value
  *
  *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit
  *                | enabled N transition.. | EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
@@ -187,7 +190,7 @@ static tb_formula_t *formula(reader_t *r, uint32_t *numbers);
 static void read_sum(reader_t *r, tb_formula_t *f)
 {
     f->op = TB_SUM;
-    f->count = (uint32_t)number(r, 0, (int64_t)r->net->places);
+    f->count = (uint32_t)number(r, 0, 100000000);
     f->term = tb_new(f->count, sizeof *f->term);
     for (uint32_t i = 0U; i < f->count; i++) {
         f->term[i].place = index_below(r, r->net->places);
@@ -323,10 +326,6 @@ static void read_question(reader_t *r, tb_question_t *q)
 /* Each place once. */
 static void read_order(reader_t *r, tb_job_t *job)
 {
-    char word[LONGEST_WORD];
-    if ((fscanf(r->file, "%63s", word) != 1) || (strcmp(word, "order") != 0)) {
-        return;
-    }
     bool *is_there = tb_new(job->net.places, sizeof *is_there);
     job->order = tb_new(job->net.places, sizeof *job->order);
     for (uint32_t i = 0U; i < job->net.places; i++) {
@@ -337,6 +336,47 @@ static void read_order(reader_t *r, tb_job_t *job)
         is_there[job->order[i]] = true;
     }
     tb_free(is_there, job->net.places, sizeof *is_there);
+}
+
+static void read_leaves(reader_t *r, tb_job_t *job)
+{
+    job->leaves = tb_new(job->net.places, sizeof *job->leaves);
+    for (uint32_t i = 0U; i < job->net.places; i++) {
+        job->leaves[i] = (uint32_t)number(r, 1, INT32_MAX);
+    }
+}
+
+static void read_exact(reader_t *r, tb_job_t *job)
+{
+    const uint32_t count = (uint32_t)number(r, 0, (int64_t)job->net.places);
+    job->exact = tb_new(job->net.places, sizeof *job->exact);
+    for (uint32_t i = 0U; i < count; i++) {
+        const uint32_t place = index_below(r, job->net.places);
+        const uint32_t values = (uint32_t)number(r, 1, (int64_t)TB_MOST_TOKENS);
+        uint32_t *leaves = tb_new((size_t)values + 1U, sizeof *leaves);
+        leaves[0] = values;
+        for (uint32_t v = 1U; v <= values; v++) {
+            leaves[v] = (uint32_t)number(r, 1, INT32_MAX);
+        }
+        job->exact[place] = leaves;
+    }
+}
+
+/* What may stand at the end. */
+static void read_rest(reader_t *r, tb_job_t *job)
+{
+    char word[LONGEST_WORD];
+    while (fscanf(r->file, "%63s", word) == 1) {
+        if (strcmp(word, "order") == 0) {
+            read_order(r, job);
+        } else if (strcmp(word, "leaves") == 0) {
+            read_leaves(r, job);
+        } else if (strcmp(word, "exact") == 0) {
+            read_exact(r, job);
+        } else {
+            tb_fail(TB_EXIT_WRONG, "`%s` is not known at the end", word);
+        }
+    }
 }
 
 void tb_read(tb_job_t *job, const char *path)
@@ -351,6 +391,6 @@ void tb_read(tb_job_t *job, const char *path)
     for (uint32_t i = 0U; i < job->questions; i++) {
         read_question(&r, &job->question[i]);
     }
-    read_order(&r, job);
+    read_rest(&r, job);
     (void)fclose(r.file);
 }
