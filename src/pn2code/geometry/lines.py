@@ -119,7 +119,7 @@ class Follower:
         frames = self._k.link_frames(flat)
         jacobian = self._k.led_jacobian(flat, frames)
         more_steep, far = self._k.led_steepness(flat, frames)
-        sigma = np.linalg.svd(jacobian, compute_uv=False)[..., -1]
+        sigma: Array = np.asarray(np.linalg.svd(jacobian, compute_uv=False)[..., -1], float)
         line = self._path.line
         rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
         twist = np.concatenate([line.shifts(s), line.spins(rotation, s)], axis=1)
