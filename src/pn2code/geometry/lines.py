@@ -17,7 +17,7 @@ import numpy as np
 
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import LinearTrajectory
-from pn2code.robot.transforms import Array, Flags
+from pn2code.robot.transforms import Array, Flags, Numbers
 
 SAMPLES = 8
 """Steps within a piece."""
@@ -25,6 +25,25 @@ SHORTEST = 1e-6
 """m and rad: a piece that is shorter, and still not known, is given up."""
 STRAIGHT = 1e-3
 """The same of a way on which the wrist is straight somewhere: there, it is never known."""
+
+
+class _Samples:
+    """What is known of samples, in arrays with a row for each; there is room for more than there are."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.fields: tuple[Array, ...] = ()
+
+    def add(self, rows: tuple[Array, ...]) -> None:
+        """Some more."""
+        first, self.count = self.count, self.count + len(rows[0])
+        if not self.fields or self.count > len(self.fields[0]):
+            old, room = self.fields, 2 * self.count
+            self.fields = tuple(np.empty((room, *x.shape[1:])) for x in rows)
+            for field, kept in zip(self.fields, old, strict=False):
+                field[:first] = kept[:first]
+        for field, more in zip(self.fields, rows, strict=True):
+            field[first : self.count] = more
 
 
 class Follower:
@@ -36,6 +55,8 @@ class Follower:
         self._steep = _steepness(kinematics)
         self._shortest = STRAIGHT if path.is_straight else SHORTEST
         self._planned = path.way(path.times)
+        self._known: dict[float, int] = {}
+        self._samples = _Samples()
 
     @property
     def trouble(self) -> str:
@@ -48,13 +69,11 @@ class Follower:
         The latter is inf where it is not known. Pieces that are too short to be divided any more are lost then, and 0
         is said of them.
         """
-        count = len(a)
         parts = np.linspace(0.0, 1.0, SAMPLES + 1)
         s = a[:, None] + (b - a)[:, None] * parts
-        q = self._at(s.ravel())
-        q = q.reshape(count, SAMPLES + 1, q.shape[1])
+        at = self._at(s.ravel()).reshape(s.shape)
         half = (b - a) * (self._speed / (2.0 * SAMPLES))
-        turns, is_fine, _ = self._bounds(q, s.reshape(count, SAMPLES + 1), half)
+        q, turns, is_fine, _ = self._bounds(at, half)
         middle = q[:, SAMPLES // 2]
         away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
         away[~is_fine] = np.inf
@@ -69,32 +88,52 @@ class Follower:
         """
         parts = np.linspace(0.0, 1.0, SAMPLES + 1)
         s = a[:, None] + (b - a)[:, None] * parts
-        q = self._at(s.ravel())
-        q = q.reshape(len(a), SAMPLES + 1, q.shape[1])
+        at = self._at(s.ravel()).reshape(s.shape)
         half = (b - a) * (self._speed / (2.0 * SAMPLES))
-        _, is_fine, (own, more) = self._bounds(q, s.reshape(len(a), SAMPLES + 1), half)
+        _, _, is_fine, (own, more) = self._bounds(at, half)
         more[~is_fine] = np.inf
         return (own - more).min(axis=1), (own + more).max(axis=1)
 
-    def _at(self, s: Array) -> Array:
-        """Joint positions on the branch of the line, with the turns that the plan has there."""
+    def _at(self, s: Array) -> Numbers:
+        """Which of the samples that are kept are at fractions of the way; new ones are worked out.
+
+        Halves of a piece have every other sample of theirs in common with it, at the very same fractions. What is
+        known of a sample depends on nothing else that is asked for.
+        """
+        keys = s.tolist()
+        new = [key for key in dict.fromkeys(keys) if key not in self._known]
+        if new:
+            self._known |= {key: self._samples.count + i for i, key in enumerate(new)}
+            self._samples.add(self._worked_out(np.array(new)))
+        return np.array([self._known[key] for key in keys], np.intp)
+
+    def _worked_out(self, s: Array) -> tuple[Array, ...]:
+        """Of samples the joint positions, on the branch of the line, with the turns that the plan has there; and more.
+
+        That is the matrix J, its least singular value, the bound on how fast it changes, how far that holds, the twist.
+        """
         rows = self._path.rows(s)
         index = np.searchsorted(self._planned, s).clip(0, len(self._planned) - 1)
-        return self._k.unwound(rows, self._path.grid[index])
+        q = self._k.unwound(rows, self._path.grid[index])
+        flat = np.nan_to_num(q)
+        frames = self._k.link_frames(flat)
+        jacobian = self._k.led_jacobian(flat, frames)
+        more_steep, far = self._k.led_steepness(flat, frames)
+        sigma: Array = np.asarray(np.linalg.svd(jacobian, compute_uv=False)[..., -1], float)
+        line = self._path.line
+        rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
+        twist = np.concatenate([line.shifts(s), line.spins(rotation, s)], axis=1)
+        twist = self._k.led_twist(twist, self._path.swivel)
+        return q, jacobian, sigma, self._steep + more_steep, far, twist
 
-    def _bounds(self, q: Array, s: Array, half: Array) -> tuple[Array, Flags, tuple[Array, Array]]:
+    def _bounds(self, at: Numbers, half: Array) -> tuple[Array, Array, Flags, tuple[Array, Array]]:
         """How far each axis turns from a sample to half way to the next, (n, samples, axes); for which pieces.
 
-        And how fast for one unit of the way: at the sample, and by how much that can be off.
+        Before that where the samples are; and last how fast for one unit of the way: at the sample, and by how much
+        that can be off.
         """
+        q, jacobian, sigma, steep, far, twist = (x[at] for x in self._samples.fields)
         there = ~np.isnan(q).any(axis=(1, 2))
-        axes = q.shape[2]
-        flat = np.nan_to_num(q).reshape(-1, axes)
-        frames = self._k.link_frames(flat)
-        jacobian = self._k.led_jacobian(flat, frames).reshape(*q.shape[:2], axes, axes)
-        more_steep, far = (x.reshape(q.shape[:2]) for x in self._k.led_steepness(flat, frames))
-        steep = self._steep + more_steep
-        sigma = np.linalg.svd(jacobian, compute_uv=False)[..., -1]
         w = half[:, None]
         inside = sigma**2 - 2.0 * steep * w
         y = (sigma - np.sqrt(np.maximum(inside, 0.0))) / steep
@@ -104,10 +143,6 @@ class Follower:
         is_fine = there & ((inside > 0.0) & (reach > 0.0) & (y <= far)).all(axis=1)
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
-        rotation = (frames[-1] @ self._k.T_flange_tcp)[:, :3, :3]
-        spin = line.spins(rotation, s.ravel()).reshape(*q.shape[:2], 3)
-        shift = line.shifts(s.ravel()).reshape(spin.shape)
-        twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)
         turns = np.zeros(q.shape)
         rates = np.zeros(q.shape), np.zeros(q.shape)
         if is_fine.any():
@@ -120,7 +155,7 @@ class Follower:
             bound = (np.abs(own) + more[..., None]) * way[..., None]
             rates[0][is_fine], rates[1][is_fine] = own, more[..., None]
             turns[is_fine] = np.minimum(bound, y[is_fine][..., None])
-        return turns, is_fine, rates
+        return q, turns, is_fine, rates
 
 
 def _steepness(kinematics: Kinematics) -> float:

@@ -6,16 +6,22 @@
     front = front.halves(level, pieces, kept)       # divided, with the pairs of links that are still of interest
 
 What is clear in a piece is clear in both of its halves; so each pair of links is looked at no longer than it must be.
+
+`near` and `Own` say which pairs of links the collision library need be asked about. A link's capsule is around a box
+that is around all of its collision shapes, with their margins, and larger by some millimetres (`BulletBackend.box`); so
+links are no nearer to each other than their capsules are, and what has capsules further apart than is asked for would
+not be found.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.tracks import Knots
+from pn2code.geometry.tracks import Knots, Track
 from pn2code.robot.transforms import Array, Flags, Numbers
 
 ROUNDING = 1e-5
@@ -28,6 +34,7 @@ class Way(Protocol):
     """A leg, or what stands."""
 
     radii: Array
+    names: dict[str, int]
     is_still: bool
 
     def begin(self) -> None:
@@ -118,6 +125,11 @@ class Level:
         """Where both are in the middle of a piece."""
         return self.first.q[self.first_at[piece]], self.second.q[self.second_at[piece]]
 
+    def gaps(self, pieces: Numbers, a: Way, b: Way) -> Array:
+        """Between the capsules of all links, in the middle of some pieces, (n, links, links)."""
+        one, two = self.first.pick(self.first_at[pieces]), self.second.pick(self.second_at[pieces])
+        return gaps(one, a.radii, two, b.radii)
+
     def spreads(self, piece: int) -> tuple[Array, Array]:
         """By how much the links of both may be off."""
         return self.first.spread[self.first_at[piece]], self.second.spread[self.second_at[piece]]
@@ -133,6 +145,40 @@ def gaps(one: Knots, radii: Array, two: Knots, others: Array) -> Array:
     """A lower bound of the distance of each two links: between their capsules, (n, links, links)."""
     p, q = one.ends[:, :, None], two.ends[:, None, :]
     return between(p[..., 0, :], p[..., 1, :], q[..., 0, :], q[..., 1, :]) - radii[:, None] - others
+
+
+def near(
+    gap: Array, limit: float, one: Sequence[str], other: Sequence[str]
+) -> set[tuple[str, str]]:
+    """The pairs of links that may be nearer to each other than `limit`, of gaps (links, links)."""
+    rows, columns = np.nonzero(~(gap > limit + ROUNDING))
+    return {(one[i], other[j]) for i, j in zip(rows.tolist(), columns.tolist(), strict=True)}
+
+
+class Own:
+    """Which links of an arm may be near to other ones of its own, or to what it carries, on a leg."""
+
+    def __init__(self, track: Track) -> None:
+        self._track = track
+        names = list(track.names)
+        one, other = np.triu_indices(len(names), 1)
+        self._pairs = [
+            (names[i], names[j]) for i, j in zip(one.tolist(), other.tolist(), strict=True)
+        ]
+        self._one, self._other = one, other
+        self._off = track.radii[one] + track.radii[other]
+        self._gaps: dict[int, Array] = {}
+
+    def near(self, a: float, b: float, limit: float) -> set[tuple[str, str]]:
+        """The pairs, each in both orders, in the middle of a piece whose knots have been asked for."""
+        knots, row = self._track.batch(a, b)
+        gap = self._gaps.get(id(knots))  # the track keeps them
+        if gap is None:
+            p, q = knots.ends[:, self._one], knots.ends[:, self._other]
+            gap = between(p[..., 0, :], p[..., 1, :], q[..., 0, :], q[..., 1, :]) - self._off
+            self._gaps[id(knots)] = gap
+        found = [self._pairs[i] for i in np.flatnonzero(~(gap[row] > limit + ROUNDING)).tolist()]
+        return {*found, *((y, x) for x, y in found)}
 
 
 def between(p1: Array, q1: Array, p2: Array, q2: Array) -> Array:

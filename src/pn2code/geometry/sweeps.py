@@ -24,10 +24,11 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.apart import Apart, Found, Standing, spread_of
-from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, gaps
+from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, Own, gaps, near
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
 from pn2code.robot.backend import Clearance
+from pn2code.robot.bullet import Near
 from pn2code.robot.parts import Part
 from pn2code.robot.transforms import Array, Flags
 
@@ -47,7 +48,10 @@ MOST_DEEPER = 600
 LIKELY = 2
 """Pieces of one size that are tried before they are small enough to be sure of them."""
 
-Measure = Callable[[Array, Array, float], list[Clearance]]
+TOGETHER = 16
+"""Pieces of which it is seen at once between which links distances are measured."""
+
+Measure = Callable[[Array, Array, float, Near | None], list[Clearance]]
 
 
 class Sweeper:
@@ -83,10 +87,10 @@ class Sweeper:
         calm = {x.robot for x in (a, b) if x.is_calm}
         turning = _turning(a, b)
 
-        def measure(q_a: Array, q_b: Array, limit: float) -> list[Clearance]:
+        def measure(q_a: Array, q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
-            found = self._backend.pairs("robots", a.robot, limit, b.robot)
+            found = self._backend.pairs("robots", a.robot, limit, b.robot, near=near)
             return [
                 replace(x, allowed=None)
                 if not turning.isdisjoint(x.plates)
@@ -118,9 +122,9 @@ class Sweeper:
     def _of_part(self, a: Track, part: Part) -> Measure:
         self._show((part, *a.parts))
 
-        def measure(q_a: Array, _q_b: Array, limit: float) -> list[Clearance]:
+        def measure(q_a: Array, _q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
-            return self._backend.pairs("scene", a.robot, limit, only={part.name})
+            return self._backend.pairs("scene", a.robot, limit, only={part.name}, near=near)
 
         return measure
 
@@ -137,6 +141,7 @@ class Sweeper:
         b.begin()
         front = Front.whole(a, b)
         found = Found(a, b, is_free=is_free)
+        names = list(a.names), list(b.names)
         while len(front.pieces):
             level = Level(front, a, b)
             is_kept = level.bound <= KEPT
@@ -148,12 +153,15 @@ class Sweeper:
             for piece in likely[level.gap_of[likely] < 0.0]:
                 self.queries += 1
                 q = level.joints(piece)
-                found.look(measure(*q, ROUNDING), front.pieces[piece], q)
+                found.look(measure(*q, ROUNDING, None), front.pieces[piece], q)
                 if found.touch is not None:
                     return found.touch
             further: list[int] = []
             begins = np.searchsorted(front.row, np.arange(len(front.pieces) + 1))
-            for piece in level.near[level.wide[level.near] <= COARSE]:
+            fine = level.near[level.wide[level.near] <= COARSE]
+            for number, piece in enumerate(fine):
+                if number % TOGETHER == 0:
+                    gap_of = level.gaps(fine[number : number + TOGETHER], a, b)
                 if self.queries >= most:
                     return found.given_up(
                         f"more than {MOST_QUERIES:,} distances would have to be measured"
@@ -166,7 +174,8 @@ class Sweeper:
                 one, other = front.one[pairs], front.other[pairs]
                 # What is not found is further away, or its capsules are.
                 low = np.maximum(level.bound[pairs], wide + FINE - ROUNDING - level.both[pairs])
-                samples = found.look(measure(*q, wide + FINE), front.pieces[piece], q)
+                nearest = near(gap_of[number % TOGETHER], wide + FINE, *names)
+                samples = found.look(measure(*q, wide + FINE, nearest), front.pieces[piece], q)
                 if found.touch is not None:
                     return found.touch
                 for sample in samples:
@@ -191,6 +200,7 @@ class Sweeper:
         """How near a leg comes to the scene, or to the arm itself; where it touches, how deep."""
         self._show(a.parts)
         a.begin()
+        own = Own(a) if kind == "self" else None
         begun = self.queries
         most = MOST_QUERIES
         count = itertools.count()
@@ -231,7 +241,8 @@ class Sweeper:
             self._backend.set_joints(a.robot, knots.q[0])
             times = 2.0 if kind == "self" else 1.0
             limit = max(best, 0.0) + times * wide + ROUNDING
-            found = self._backend.pairs(kind, a.robot, limit)
+            nearest = None if own is None else own.near(first, last, limit)
+            found = self._backend.pairs(kind, a.robot, limit, near=nearest)
             bound = best + ROUNDING
             is_open = False
             lowest = max(best, 0.0) + ROUNDING
@@ -321,6 +332,7 @@ def deepest(two: Two, known: Apart) -> Apart:
     a.begin()
     b.begin()
     begun, count = two.sweeper.queries, itertools.count()
+    names = list(a.names), list(b.names)
     least = best.nearest
     heap = [(-math.inf, next(count), np.array([0.0, 1.0, 0.0, 1.0]))]
     while heap:
@@ -330,7 +342,8 @@ def deepest(two: Two, known: Apart) -> Apart:
             break
         one, other = a.knots(own[None, 0], own[None, 1]), b.knots(own[None, 2], own[None, 3])
         both = one.spread[0][:, None] + other.spread[0][None, :]
-        bound = gaps(one, a.radii, other, b.radii)[0] - both
+        gap_of = gaps(one, a.radii, other, b.radii)[0]
+        bound = gap_of - both
         if two.skipped is not None:
             bound[two.skipped] = math.inf
         low = max(low, float(bound.min()))
@@ -342,7 +355,8 @@ def deepest(two: Two, known: Apart) -> Apart:
             joints = (one.q[0], other.q[0])
             measured = cut + ROUNDING
             middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
-            for gap in two.measure(*joints, wide + max(cut, 0.0) + 2.0 * ROUNDING):
+            limit = wide + max(cut, 0.0) + 2.0 * ROUNDING
+            for gap in two.measure(*joints, limit, near(gap_of, limit, *names)):
                 allowed = gap.permitted(is_free=two.is_free)
                 if allowed is not None and two.skipped is not None:
                     continue

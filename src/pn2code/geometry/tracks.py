@@ -150,6 +150,7 @@ class Track:
         arm = shape.robot.arm
         self._slides = [arm.slides(j) for j in range(len(arm.axes))]
         self.names = {x.name: i for i, x in enumerate(self.links)}
+        assert len(self.names) == len(self.links), "each link has a name of its own"
         self._rows: dict[tuple[float, float], tuple[int, int]] = {}
         self._kept: list[Knots] = []
         self._follower: Follower | None = None
@@ -213,6 +214,11 @@ class Track:
             )
         self._is_lost = self._is_lost or bool(found.lost.any())
         return found
+
+    def batch(self, a: float, b: float) -> tuple[Knots, int]:
+        """A piece that has been asked for among those that were worked out together, and which of them it is."""
+        number, row = self._rows[a, b]
+        return self._kept[number], row
 
     def _with_parts(self, new: list[tuple[float, float]]) -> list[tuple[float, float]]:
         """Pieces that are new; if they are few, also what they will be divided into, which is asked for next."""

@@ -12,9 +12,9 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Collection, Container, Iterator, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import field, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,12 @@ _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
 _PAD = 0.004  # m: PyBullet has margins around shapes
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
+_EACH = (
+    10  # pairs of links that are measured one by one; of more, those of whole bodies take less time
+)
+
+Near = Collection[tuple[str, str]]
+"""Pairs of names (of links, or of parts) that may be near to each other; all others certainly are not."""
 
 
 @contextmanager
@@ -72,7 +78,8 @@ def _silent() -> Iterator[None]:
 class _Loaded:
     """A robot in PyBullet: body, its links by index, which joints move, which pairs are tested.
 
-    Of `plates` one is a turntable of the robot: of these pairs some may touch. `root` is the base link of the arm.
+    Of `plates` one is a turntable of the robot: of these pairs some may touch. `root` is the base link of the arm;
+    `names` are those of links in messages.
     """
 
     robot: CellRobot
@@ -83,6 +90,7 @@ class _Loaded:
     pairs: list[tuple[int, int]]
     plates: list[tuple[int, int]]
     root: int
+    names: dict[int, str]
 
 
 @record
@@ -108,7 +116,7 @@ class _Side:
 
     Args:
         robot: whose it is, "" if it stands.
-        links: names by index, of a robot; whole: the name of a body without links.
+        links: names by index, of a robot; indices: the same by name; whole: the name of a body without links.
         base: the robot whose base link it has, and `root` which it is; ignored_by: robots that stand on it.
         rides: the turntable of the robot on which it stands, a part that goes with it.
     """
@@ -121,6 +129,7 @@ class _Side:
     ignored_by: tuple[str, ...] = ()
     root: int = -1
     rides: str = ""
+    indices: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def key(self) -> str:
@@ -129,6 +138,12 @@ class _Side:
     def link(self, index: int) -> str:
         """The name of a link."""
         return self.whole or self.links[index]
+
+    def at(self, name: str) -> int | None:
+        """The number of what has a name, -1 of a whole body; None: it is not of this side."""
+        if self.whole:
+            return -1 if name == self.whole else None
+        return self.indices.get(name)
 
 
 class BulletBackend:
@@ -174,6 +189,7 @@ class BulletBackend:
         self._known: dict[tuple[str, ...], list[Clearance]] = {}
         self._searched = 0.0
         self._q: dict[str, tuple[float, ...]] = {}
+        self._axis: dict[str, int] = {}
         self._arms: dict[str, _Side] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
         self._plates = {f"{r.name}/{a.name}" for r in cell.robots for a in r.axes.tables}
@@ -261,6 +277,7 @@ class BulletBackend:
             [x for x in pairs if tables.isdisjoint(x)],
             [x for x in pairs if not tables.isdisjoint(x)],
             index[robot.root],
+            {i: f"{robot.name}/{name}" for i, name in links.items()},
         )
 
     def _load_body(self, body: Body, looks: bool) -> _Standing:
@@ -287,17 +304,27 @@ class BulletBackend:
     def set_joints(self, robot: str, q: Sequence[float] | Array) -> None:
         """Puts a robot at a joint position, rad."""
         loaded = self._robots[robot]
-        if self._q.get(robot) == tuple(q):
+        old, new = self._q.get(robot), tuple(q)
+        if old == new:
             return
-        self._q[robot] = tuple(q)
+        self._q[robot] = new
         if self._known:
             self._known = {k: v for k, v in self._known.items() if robot not in k}
         self._p.resetJointStatesMultiDof(
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
         for placed in self._parts.values():
-            if placed.part.carrier == robot:
+            if placed.part.carrier != robot:
+                continue
+            if old is None or not placed.part.plate or self._turned(placed.part.plate, old, new):
                 self._move(placed)
+
+    def _turned(self, plate: str, old: Sequence[float], new: Sequence[float]) -> bool:
+        """Whether what carries parts has moved between two joint positions: only its own axis moves it."""
+        if plate not in self._axis:
+            robot = self._robots[plate.partition("/")[0]].robot
+            self._axis[plate] = robot.index(robot.plate(plate).name)
+        return old[self._axis[plate]] != new[self._axis[plate]]
 
     def set_base(self, robot: str, base: Pose) -> None:
         """Puts the base of a robot elsewhere; what it stands on stays."""
@@ -434,6 +461,7 @@ class BulletBackend:
         limit: float,
         other: str = "",
         only: Container[str] | None = None,
+        near: Near | None = None,
     ) -> list[Clearance]:
         """The least distance of each two links, or link and thing, that are nearer than `limit` (m).
 
@@ -441,11 +469,13 @@ class BulletBackend:
             kind: to which things: of the robot `other`, of the scene (with the parts that stand), or its own.
             robot: of which the links are, with the part that it carries.
             only: of the scene, the things of these names.
+            near: only these pairs can be nearer than `limit`, a link of `robot` first, of its own links and parts in
+                both orders; None: nothing is known.
         """
         a = self._robots[robot]
         best: dict[tuple[str, str], Clearance] = {}
         if kind == "self":
-            for gap in self._every_own(a, limit):
+            for gap in self._every_own(a, limit, near):
                 _keep_nearest(best, gap)
             return list(best.values())
         others = self._standing() if kind == "scene" else self._sides(self._robots[other])
@@ -453,9 +483,7 @@ class BulletBackend:
             if only is not None and second.whole not in only:
                 continue
             for first in self._sides(a):
-                found = self._p.getClosestPoints(
-                    first.id, second.id, limit, physicsClientId=self._client
-                )
+                found = self._points(first, second, limit, near)
                 skip_base = first.base != "" and first.base in second.ignored_by
                 for c in found:
                     stands = skip_base and c[3] == first.root
@@ -484,26 +512,51 @@ class BulletBackend:
                     _keep_nearest(best, gap)
         return list(best.values())
 
-    def _every_own(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+    def _points(self, a: _Side, b: _Side, limit: float, near: Near | None) -> Sequence[Any]:
+        """What is near between two bodies, as Bullet has it; of pairs in the order in which it goes through them."""
+        if near is None:
+            points: Sequence[Any] = self._p.getClosestPoints(
+                a.id, b.id, limit, physicsClientId=self._client
+            )
+            return points
+        pairs = sorted(
+            (i, j)
+            for i, j in ((a.at(x), b.at(y)) for x, y in near)
+            if i is not None and j is not None
+        )
+        if len(pairs) > _EACH:
+            return self._points(a, b, limit, None)
+        return [
+            c
+            for i, j in pairs
+            for c in self._p.getClosestPoints(a.id, b.id, limit, i, j, physicsClientId=self._client)
+        ]
+
+    def _every_own(self, a: _Loaded, limit: float, near: Near | None) -> Iterator[Clearance]:
+        name = a.robot.name
         for i, j in a.pairs:
+            one, two = a.names[i], a.names[j]
+            if near is not None and (one, two) not in near:
+                continue
             for c in self._p.getClosestPoints(
                 a.body, a.body, limit, i, j, physicsClientId=self._client
             ):
-                one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-                yield Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
-        yield from self._on_plates(a, limit)
-        yield from self._every_carried(a, limit)
-        yield from self._beside_riders(a, limit)
+                yield Clearance("self", name, one, two, c[8], None, c[5], c[6])
+        yield from self._on_plates(a, limit, near)
+        yield from self._every_carried(a, limit, near)
+        yield from self._beside_riders(a, limit, near)
 
-    def _on_plates(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+    def _on_plates(self, a: _Loaded, limit: float, near: Near | None = None) -> Iterator[Clearance]:
         """Between the turntables of a robot, with what is on them, and the rest of it; its tool may touch them."""
         for i, j in a.plates:
+            one, two = a.names[i], a.names[j]
+            if near is not None and (one, two) not in near:
+                continue
             found = self._p.getClosestPoints(
                 a.body, a.body, limit, i, j, physicsClientId=self._client
             )
-            one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-            allowed = self.allowed(one, two)
             for c in found:
+                allowed = self.allowed(one, two)
                 yield Clearance("self", a.robot.name, one, two, c[8], allowed, c[5], c[6])
 
     def box(self, robot: str, link: str) -> tuple[Array, Array] | None:
@@ -557,7 +610,9 @@ class BulletBackend:
             if plate and part.part.carrier == a.robot.name:
                 yield _Side(a.robot.name, part.id, {}, part.part.name, rides=plate)
 
-    def _beside_riders(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+    def _beside_riders(
+        self, a: _Loaded, limit: float, near: Near | None = None
+    ) -> Iterator[Clearance]:
         """Between what stands on turntables of a robot and the rest of it: arm, part in its tool, other plates."""
         riders = list(self._riding(a))
         if not riders:
@@ -570,6 +625,8 @@ class BulletBackend:
             others += [(side.whole, side.id, -1) for side in held]
             others += [(x.whole, x.id, -1) for x in riders if x.rides < rider.rides]
             for other, body, link in others:
+                if near is not None and (other, rider.whole) not in near:
+                    continue
                 found = self._p.getClosestPoints(
                     body, rider.id, limit, link, -1, physicsClientId=self._client
                 )
@@ -582,8 +639,8 @@ class BulletBackend:
         """A robot, the part that it carries, and those that stand on its turntables."""
         name = a.robot.name
         if name not in self._arms:
-            links = {i: f"{name}/{link}" for i, link in a.links.items()}
-            self._arms[name] = _Side(name, a.body, links, "", name, root=a.root)
+            indices = {link: i for i, link in a.names.items()}
+            self._arms[name] = _Side(name, a.body, a.names, "", name, root=a.root, indices=indices)
         yield self._arms[name]
         for part in self._parts.values():
             if part.part.holder == name:
@@ -651,7 +708,9 @@ class BulletBackend:
         touching = [gap for gap in found if gap.allowed is not None]
         return touching if nearest is None else [nearest, *touching]
 
-    def _every_carried(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+    def _every_carried(
+        self, a: _Loaded, limit: float, near: Near | None = None
+    ) -> Iterator[Clearance]:
         """Between what a robot carries (parts, a tool) and the robot itself, but for its tool and the last axis.
 
         On a turntable it may be put. How far a link may still come differs from one to the other: who looks between
@@ -662,12 +721,12 @@ class BulletBackend:
             return
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         tables = {a.index[t] for t in a.robot.arm.tables}
-        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
+        own = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
         for side in self._sides(a):
             for i in a.links if not side.links and not side.rides else ():
-                if i in near:
+                other = a.names[i]
+                if i in own or (near is not None and (side.whole, other) not in near):
                     continue
-                other = f"{name}/{a.links[i]}"
                 allowed = self.allowed(side.whole, other) if i in tables else None
                 for c in self._p.getClosestPoints(
                     side.id, a.body, limit, -1, i, physicsClientId=self._client

@@ -206,43 +206,55 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
 
 def inwards(polygon: Array, points: Array) -> Array:
     """How far places (n, 2) are inside of each edge of a polygon, (edges, n); negative: outside of it."""
-    along = np.roll(polygon, -1, axis=0) - polygon
-    along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
+    along = _along(polygon)
     off = points[None] - polygon[:, None]
     return np.asarray(along[:, 0, None] * off[..., 1] - along[:, 1, None] * off[..., 0])
 
 
+def _along(polygon: Array) -> Array:
+    """The directions of the edges of a polygon, (edges, 2)."""
+    along = np.concatenate([polygon[1:], polygon[:1]]) - polygon
+    return np.asarray(along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300))
+
+
 def part_below(polygon: Array, values: Array, most: float) -> Array:
     """Of a polygon with a value at each corner, linear in between, the part where it is at most so much."""
+    return np.array(_below(polygon.tolist(), values.tolist(), most)).reshape(-1, 2)
+
+
+def _below(polygon: list[list[float]], values: list[float], most: float) -> list[list[float]]:
+    """The same of lists: a few numbers are worked out sooner one by one."""
     out = []
-    for i in range(len(polygon)):
+    for i, p in enumerate(polygon):
         j = (i + 1) % len(polygon)
         a, b = values[i] - most, values[j] - most
         if a <= 0.0:
-            out.append(polygon[i])
+            out.append(p)
         if (a < 0.0 < b) or (b < 0.0 < a):
-            out.append(polygon[i] + (polygon[j] - polygon[i]) * (a / (a - b)))
-    return np.array(out).reshape(-1, 2)
+            part, q = a / (a - b), polygon[j]
+            out.append([p[0] + (q[0] - p[0]) * part, p[1] + (q[1] - p[1]) * part])
+    return out
+
+
+def _cut(polygon: Array, edges: Array, by: float) -> list[list[float]]:
+    """What of a polygon is inside of all edges of another one, by so much (m)."""
+    out: list[list[float]] = polygon.tolist()
+    for (x, y), (u, v) in zip(edges.tolist(), _along(edges).tolist(), strict=True):
+        if len(out) < 3:
+            break
+        out = _below(out, [-(u * (q - y) - v * (p - x)) for p, q in out], -by)
+    return out
 
 
 def shrunk(polygon: Array, by: float) -> Array:
     """The polygon without all that is so near to its edges (m)."""
-    out = polygon
-    for i in range(len(polygon)):
-        if len(out) < 3:
-            break
-        out = part_below(out, -inwards(polygon, out)[i], -by)
-    return out
+    return np.array(_cut(polygon, polygon, by)).reshape(-1, 2)
 
 
 def overlap(a: Array, b: Array) -> Array:
     """What two polygons have in common."""
-    out = a
-    for i in range(len(b)):
-        if len(out) < 3:
-            break
-        out = part_below(out, -inwards(b, out)[i], 0.0)
-    return out if len(out) >= 3 else np.zeros((0, 2))
+    out = _cut(a, b, 0.0)
+    return np.array(out) if len(out) >= 3 else np.zeros((0, 2))
 
 
 def inside(polygon: Array, point: Array) -> float:

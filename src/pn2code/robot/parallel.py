@@ -46,18 +46,19 @@ class ParallelAxes(ClosedForm):
     def branches(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
         """Joint positions (n, 8, 6) by branch, axes in (-pi, pi]; NaN where a branch does not exist."""
         poses = T_base_tcp @ self._T_tcp_flange
+        targets = poses.copy()
+        targets[:, :3, :3] = poses[:, :3, :3] @ self._turn.T
+        answers = [self._solver.calculate_IK(target) for target in targets]
+        rows = [np.asarray(a.Q, float).reshape(-1, AXES) for a in answers]
         found = np.full((len(poses), _BRANCHES, AXES), np.nan)
-        for i, pose in enumerate(poses):
-            target = pose.copy()
-            target[:3, :3] = pose[:3, :3] @ self._turn.T
-            answers = self._solver.calculate_IK(target)
-            rows = np.asarray(answers.Q, float).reshape(-1, AXES)
-            if len(rows):
-                # Exact answers last, so that they stand where an approximation was as well; what is no answer the
-                # comparison with the forward kinematics drops (`Kinematics.all_branches`).
-                order = np.argsort(~np.asarray(answers.is_LS, bool), kind="stable")
-                rows = rows[order]
-                found[i, self.slots(rows)] = rows
+        which = np.repeat(np.arange(len(poses)), [len(r) for r in rows])
+        if len(which):
+            # Exact answers last, so that they stand where an approximation was as well; what is no answer the
+            # comparison with the forward kinematics drops (`Kinematics.all_branches`).
+            is_exact = ~np.concatenate([np.asarray(a.is_LS, bool) for a in answers])
+            order = np.lexsort((is_exact, which))
+            q = np.concatenate(rows)[order]
+            found[which[order], self.slots(q)] = q
         return np.asarray((found + np.pi) % (2.0 * np.pi) - np.pi)
 
     def slots(self, q: Array) -> Array:
