@@ -205,7 +205,11 @@ def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 def test_a_cell_without_arms_has_no_pictures(tmp_path: Path) -> None:
     made = RunRecord("cell", "", "bullet", verdict="finished")
     engine: Any = SimpleNamespace(
-        record=made, cell=SimpleNamespace(robots=(SimpleNamespace(name="other"),)), backend=None, activity="", robots=[]
+        record=made,
+        cell=SimpleNamespace(robots=()),
+        backend=None,
+        activity="",
+        robots=[],
     )
     pictures = Album(tmp_path, video=True)
     pictures.begun(engine)
