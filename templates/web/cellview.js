@@ -317,7 +317,7 @@ export class CellView {
 
   /**
    * @param {number} t
-   * @param {{isGoing?: boolean, isWhole?: boolean}} [how] whether the moment goes on by itself; with all that is written
+   * @param {{isGoing?: boolean, isWhole?: boolean}} how whether the moment goes on by itself; with all that is written
    */
   update(t, { isGoing = false, isWhole = true } = {}) {
     this.t = t;

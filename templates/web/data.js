@@ -9,7 +9,7 @@ const ARRAYS = {
 
 /**
  * @param {string} text base64
- * @returns {Uint8Array<ArrayBuffer>}
+ * @returns {BlobPart}
  */
 function bytes(text) {
   const raw = atob(text);
@@ -23,7 +23,9 @@ function bytes(text) {
  * @returns {Promise<any>}
  */
 async function unpacked(packed) {
-  const stream = new Blob([bytes(packed.deflate)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  // TypeScript 4 does not know it yet.
+  const inflate = new (/** @type {any} */ (globalThis).DecompressionStream)("deflate");
+  const stream = new Blob([bytes(packed.deflate)]).stream().pipeThrough(inflate);
   const buffer = await new Response(stream).arrayBuffer();
   if (packed.type === "text") return new TextDecoder().decode(buffer);
   const array = new ARRAYS[packed.type](buffer);

@@ -19,14 +19,14 @@ export class Flights {
   constructor(sheet) {
     this.sheet = sheet;
     this.layer = el("div", { class: "flights", "aria-hidden": "true" });
-    /** Dots that are not on their way: to make one takes the browser longer than to move it. @type {any[]} */
-    this.idle = [];
+    /** Dots that are not on their way: to make one takes the browser longer than to move it. */
+    this.idle = /** @type {any[]} */ ([]);
     /** @type {Set<Animation>} */
     this.ways = new Set();
     /** Points of arcs, in the drawing. @type {WeakMap<any, DOMPoint[]>} */
     this.points = new WeakMap();
-    /** What waits for the picture of its step. @type {{occurred: Occurred, elements: Map<string, any[]>}[]} */
-    this.waiting = [];
+    /** What waits for the picture of its step. */
+    this.waiting = /** @type {{occurred: Occurred, elements: Map<string, any[]>}[]} */ ([]);
   }
 
   /** Another page is shown: what occurred on the last one is seen no more. */

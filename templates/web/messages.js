@@ -25,8 +25,8 @@ export class Messages {
     this.parties = run.happenings?.parties ?? [];
     /** @type {number[]} */
     this.times = Array.from(this.messages, (/** @type {any} */ m) => m.t);
-    /** The step that writes or takes each, 0: not known. @type {number[]} */
-    this.steps = [];
+    /** The step that writes or takes each, 0: not known. */
+    this.steps = /** @type {number[]} */ ([]);
     findSteps(this.messages, clock.course, this.steps);
     const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
     host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));

@@ -18,7 +18,9 @@ export class Moments {
    */
   constructor(run, clock) {
     this.clock = clock;
-    const { bars = [], messages = [], events = [] } = run.happenings ?? {};
+    /** @type {{bars?: any[], messages?: any[], events?: any[]}} */
+    const happenings = run.happenings ?? {};
+    const { bars = [], messages = [], events = [] } = happenings;
     const times = [...(run.cell?.gaps.t ?? [])];
     for (const bar of bars) times.push(bar.start, bar.end);
     for (const { t } of [...messages, ...events, ...(run.cell?.marks ?? [])]) times.push(t);

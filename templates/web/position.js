@@ -23,8 +23,8 @@ export class Position {
     this.markings = Array.from({ length: count }, () => "empty");
     /** How long a marking is of which only the beginning is here. @type {Map<number, number>} */
     this.lengths = new Map();
-    /** The enabled transitions, in order; another array whenever they are others. @type {number[]} */
-    this.enabled = [];
+    /** The enabled transitions, in order; another array whenever they are others. */
+    this.enabled = /** @type {number[]} */ ([]);
     /** The last entries by number. @type {Map<number, any>} */
     this.entries = new Map();
     /** @type {any} */
