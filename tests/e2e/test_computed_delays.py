@@ -94,10 +94,12 @@ def test_an_exception_in_a_delay_is_one_of_the_net(workshop: Workshop, tmp_path:
         net Wrong
           standard
           colset T = int timed;
-          var t: T;
+          var t: T;  var n: INT;
           place A : T = 1`0@5
+          place N : INT = 1`0
           trans Go
-            in A : t@+(7 div t)
+            in A : t@+(7 div n)
+            in N : n
     """
     result = walk(write(text, tmp_path / "net.cpn"), "Wrong", workshop, steps=5, seconds=60.0)
     assert (result.verdict, result.end) == ("agrees", "error"), result

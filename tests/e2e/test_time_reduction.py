@@ -48,8 +48,10 @@ CONVEYOR = """
       val P_HIGH = 100;
       colset BOX = int with 1..3 timed;
       colset SLOT = unit timed;
-      var b: BOX;
+      colset KIND = int with 1..3;
+      var b: BOX;  var k: KIND;
       place Source : BOX = 1`1 ++ 1`2 ++ 1`3
+      place Kinds : KIND = 1`1 ++ 1`2 ++ 1`3
       place Belt : BOX
       place Room : UNIT = 2`()
       place Sink : BOX
@@ -57,8 +59,9 @@ CONVEYOR = """
         in Source : b
         in Room : ()
         out Belt : b@+10
-      trans Take
-        in Belt : b@+(2 * b)
+      trans Take guard [k = b]
+        in Belt : b@+(2 * k)
+        both Kinds : k
         out Room : ()
         out Sink : b@+4
       trans Return
@@ -254,13 +257,13 @@ def test_what_reads_the_time_is_refused(clauses: str, output: str, why: str) -> 
 
 @pytest.mark.parametrize(
     ("delay", "refused"),
-    [("(~1)", True), ("3", False), ("t", True), ("soon", False), ("past", True), ("odd", True)],
+    [("(~1)", True), ("3", False), ("n", True), ("soon", False), ("past", True), ("odd", True)],
 )
 def test_early_delays_must_not_be_negative(delay: str, refused: bool) -> None:
     text = REFUSED.replace("in A : t", f"in A : t@+{delay}")
     values = "val soon = 2 * 3; val past = ~2; val (odd, even) = (~1, 2);"
     text = text.replace("globref", f"{values}\n      globref", 1)
-    net = flat(text % ("", "t"))
+    net = flat(text % ("", "t") + "        in N : n\n" * (delay == "n"))
     assert (why_not_reducible(net) is not None) == refused
 
 

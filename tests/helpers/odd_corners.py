@@ -917,13 +917,28 @@ trans T delay @+ ~3
         "token delay by variable",
         r"""
 place A : INTT = 1`1@5 +++ 1`3@6
+place K : INT = 1`1 ++ 1`3
+place B : INTT
+trans T
+  in A : t@+n
+  in K : n
+  guard [n = t]
+  out B : t
+""",
+        2,
+        {'B': '1`1@4+++ 1`3@3'},
+    ),
+    (
+        "token delay by the token's own variable",
+        r"""
+place A : INTT = 1`1@5 +++ 1`3@6
 place B : INTT
 trans T
   in A : t@+t
   out B : t
 """,
-        2,
-        {'B': '1`1@4+++ 1`3@3'},
+        0,
+        'binding-circle',
     ),
     (
         "delay of whole multi-set",
@@ -1352,9 +1367,11 @@ trans T delay @++ 0.5
         r"""
 option realtimestamp true
 place A : RT = 1`1.5@5.0
+place K : REAL = 1`1.5
 place B : RT
 trans T
   in A : rr @++ 0.5
+  in K : rr
   out B : rr
 """,
         1,

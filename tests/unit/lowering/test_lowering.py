@@ -192,7 +192,8 @@ def early(declarations: str, delay: str, option: str = "false") -> str:
     time = "5.0" if option == "true" else "5"
     return (
         f"net Cell\n  standard\n  option realtimestamp {option}\n  colset JOB = int timed;\n  {declarations}\n"
-        f"  var n: JOB;\n  place P : JOB = 1`1@{time}\n  trans T\n    in P : n{delay}\n"
+        f"  var n: JOB;\n  place P : JOB = 1`1@{time}\n"
+        f"  place Q : INT = 1`1\n  trans T\n    in P : n{delay}\n    in Q : n\n"
     )
 
 
