@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pn2code.cell.partition import Owner
+from pn2code.cell.partition import SUPERVISOR, Owner
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 
-SUPERVISOR = 0
 AS_REGISTER = (
     'write `kind = "register"` into its table (docs/cookbook.md, `A value that several read`)'
 )

@@ -26,6 +26,10 @@ class OwnerKind(Enum):
     """a script like a robot's, without an arm"""
 
 
+SUPERVISOR = 0
+"""The number of the supervisor among the owners of a partition."""
+
+
 @frozen
 class Owner:
     """A party: `name` is "supervisor" or the robot's or device's name in cell.toml; `instance` the path of its

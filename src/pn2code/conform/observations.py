@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from dataclasses import field, replace
 
 from pn2code.base.frozen import frozen, record
-from pn2code.cell.partition import Channel, Partition
+from pn2code.cell.partition import SUPERVISOR, Channel, Partition
 from pn2code.conform.clock import Clock
-from pn2code.conform.scheme import SUPERVISOR, Scheme
+from pn2code.conform.scheme import Scheme
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.token_game import Game
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.evaluation.references import Held
 from pn2code.semantics.game.enabling import GivenUpError
@@ -25,8 +25,6 @@ from pn2code.semantics.game.token_game import Game, GameError
 
 MOST_STATES = 20_000
 """Up to which a program is compared in all states, unless somebody says otherwise."""
-SUPERVISOR = 0
-"""Its number among the owners of a partition."""
 
 
 @frozen

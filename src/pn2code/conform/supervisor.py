@@ -16,13 +16,13 @@ from dataclasses import field
 
 from pn2code.base.frozen import frozen, record
 from pn2code.base.how_far import HowFar, Say, silent
-from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.partition import SUPERVISOR, ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.observations import Observation, ObservedChange, look, observed
 from pn2code.conform.probe import SESSION, Answer, Probe
-from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
+from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, place_from_json, place_text
 from pn2code.semantics.game.token_game import Game

@@ -17,7 +17,7 @@ from enum import Enum
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
 from pn2code.ml.core.colsets import Colset
-from pn2code.ml.core.terms import Exp, Pat, Program, Symbol
+from pn2code.ml.core.terms import Exp, Lit, Pat, Program, Symbol
 
 
 class ArcKind(Enum):
@@ -93,6 +93,15 @@ class FlatArc:
     inscription: ArcInscription | None
     origin: Origin
     place_name: str = ""
+
+    @property
+    def takes_one(self) -> bool:
+        """Whether an input arc takes one token whatever happens, when it is available."""
+        terms = self.inscription.terms if self.inscription is not None else ()
+        if len(terms) != 1 or terms[0].whole or terms[0].delay is not None:
+            return False
+        coefficient = terms[0].coefficient
+        return isinstance(coefficient, Lit) and coefficient.value == 1
 
 
 @frozen

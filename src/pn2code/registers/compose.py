@@ -18,7 +18,7 @@ generated, run and replayed is this net: there is none in which a reader sees a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePath
 
@@ -27,32 +27,15 @@ from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.divide import divide
 from pn2code.cell.files import faults, one_name
-from pn2code.cell.looked_at import only_looks
 from pn2code.cell.owners import owners_of, owners_of_transitions
-from pn2code.cell.partition import ChannelKind, Owner, Partition
-from pn2code.cell.place_finder import PlaceFinder
-from pn2code.cell.scalars import message_scalars
-from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.cell.partition import SUPERVISOR, ChannelKind, Owner, Partition
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.builder import LOOK, REGISTER, Arc, Builder
-from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition
-from pn2code.robot_scripts.machine import analyse, initial_tokens, tokens
-
-SUPERVISOR = 0
-_HINT = (
-    "a register has one token from the start, which each transition of the supervisor that uses it replaces or puts "
-    "back, and each of a robot or device puts back (docs/cookbook.md, `A value that several read`)"
-)
-
-
-@frozen
-class _Register:
-    """An entry of cell.toml that is a register, its place, and who looks there."""
-
-    entry: ChannelConfig
-    place: FlatPlace
-    readers: tuple[int, ...]
+from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition
+from pn2code.registers.recognised import Register, refuse, registers
+from pn2code.robot_scripts.machine import analyse
 
 
 @frozen
@@ -69,134 +52,15 @@ class _Made:
 
 def with_messages(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[FlatNet, CellConfig]:
     """The net and the cell with registers made of messages; as they are after an error."""
-    entries = [c for c in config.channels if c.is_register]
     before = len(d.errors)
     owners = owners_of(net, config, d)
     of = owners_of_transitions(net, owners, d) if len(d.errors) == before else ()
     if len(d.errors) != before:
         return net, config
-    find = PlaceFinder(net, d)
-    found: list[_Register] = []
-    for entry in entries:
-        place = find(entry.place, entry.origin, "register")
-        if place is None:
-            continue
-        if any(r.place.index == place.index for r in found):
-            _refuse(d, place, entry, "has two entries")
-        else:
-            found += _register(net, config, owners, of, entry, place, d)
+    found = registers(net, config, owners, of, d)
     if len(d.errors) != before:
         return net, config
     return _Composer(net, config, owners, of, found, d).made()
-
-
-# --- which places are registers ------------------------------------------------------------------
-
-
-def _refuse(
-    d: Diagnostics, place: FlatPlace, entry: ChannelConfig, says: str, at: Origin | None = None
-) -> None:
-    d.error(
-        codes.REGISTER,
-        f"register `{place.name}` {says}",
-        at or place.origins[0],
-        notes=[Note("it is a register here", entry.origin)],
-        hint=_HINT,
-    )
-
-
-def _register(
-    net: FlatNet,
-    config: CellConfig,
-    owners: Sequence[Owner],
-    of: Sequence[int],
-    entry: ChannelConfig,
-    place: FlatPlace,
-    d: Diagnostics,
-) -> Iterator[_Register]:
-    before = len(d.errors)
-    users = {
-        owner
-        for t, owner in zip(net.transitions, of, strict=True)
-        if any(a.place == place.index for a in t.arcs)
-    }
-    setters = sorted(i for i in users if not only_looks(net, place.index, owners[i]))
-    readers = sorted(users - {SUPERVISOR})
-    others = [owners[i].phrase for i in setters if i != SUPERVISOR]
-    if others:
-        _refuse(
-            d,
-            place,
-            entry,
-            f"is changed by {', '.join(others)}, but only the supervisor sets registers",
-        )
-    elif not setters:
-        _refuse(d, place, entry, "is set by no transition of the supervisor")
-    if not readers:
-        _refuse(d, place, entry, "is read by no robot or device")
-    if place.colset.timed:
-        _refuse(
-            d,
-            place,
-            entry,
-            f"has the timed colour set `{place.colset.name}`, and values carry no time stamps",
-        )
-    elif message_scalars(place.colset) is None:
-        _refuse(d, place, entry, f"has colour set `{place.colset.name}`, which no message can hold")
-    elif not _is_one_initially(net, place):
-        _refuse(d, place, entry, "does not hold exactly one token in its initial marking")
-    find = PlaceFinder(net, Diagnostics())
-    if any(place.index in find.meant(i.place) for i in config.inputs):
-        _refuse(d, place, entry, "is an [[input]] as well")
-    if any(place.index in find.meant(name) for name in config.supervisor.final):
-        _refuse(d, place, entry, "is a final place as well")
-    for t in net.transitions:
-        odd = _odd(t, place.index, net.program)
-        if odd is not None:
-            _refuse(d, place, entry, f"and transition `{t.name}`: {odd[0]}", odd[1])
-    if len(d.errors) == before:
-        yield _Register(entry, place, tuple(readers))
-
-
-def _is_one_initially(net: FlatNet, place: FlatPlace) -> bool:
-    if place.initial is None:
-        return False
-    found = list(initial_tokens(*place.initial, net.program))
-    return len(found) == 1 and found[0][1] is not None and len(found[0][1]) == 1
-
-
-def _odd(t: FlatTransition, place: int, program: core.Program) -> tuple[str, Origin] | None:
-    """What a transition does with a register that leaves more or less than one token there, and where."""
-    arcs = [a for a in t.arcs if a.place == place]
-    if not arcs:
-        return None
-    for a in arcs:
-        if a.kind in (ArcKind.INHIBITOR, ArcKind.RESET):
-            return f"{a.kind.value} arc", a.origin
-        if a.kind is not ArcKind.OUTPUT and not _takes_one(a):
-            return "the arc does not take just one token", a.origin
-        if a.kind is not ArcKind.INPUT and not _puts_one(a):
-            return "the arc does not put just one token", a.origin
-    taken = sum(a.kind is not ArcKind.OUTPUT for a in arcs)
-    put = sum(a.kind is not ArcKind.INPUT for a in arcs)
-    if (taken, put) != (1, 1):
-        return f"it takes {taken} tokens and puts {put}", arcs[0].origin
-    return None
-
-
-def _takes_one(arc: FlatArc) -> bool:
-    terms = arc.inscription.terms if arc.inscription is not None else ()
-    if len(terms) != 1 or terms[0].whole or terms[0].delay is not None:
-        return False
-    coefficient = terms[0].coefficient
-    return isinstance(coefficient, core.Lit) and coefficient.value == 1
-
-
-def _puts_one(arc: FlatArc) -> bool:
-    if arc.inscription is None:
-        return False
-    outcomes = list(tokens(arc.inscription.value, arc.inscription.form))
-    return all(found is not None and len(found) == 1 for _, found in outcomes)
 
 
 # --- the net -------------------------------------------------------------------------------------
@@ -209,7 +73,7 @@ class _Composer:
         config: CellConfig,
         owners: Sequence[Owner],
         of: Sequence[int],
-        found: Sequence[_Register],
+        found: Sequence[Register],
         d: Diagnostics,
     ) -> None:
         self.net = net
@@ -242,7 +106,7 @@ class _Composer:
             return self.net, self.config
         return self._placed(self.b.net()), replace(self.config, channels=tuple(self.entries))
 
-    def _copy(self, register: _Register, reader: int) -> None:
+    def _copy(self, register: Register, reader: int) -> None:
         """What a reader has seen: a place of its own, where its transitions look."""
         place = register.place
         short = f"{_word(place.short)}_seen"
@@ -285,7 +149,7 @@ class _Composer:
             if copy is None:
                 continue
             if copy not in machine.variables:
-                _refuse(d, register.place, register.entry, f"tells where {owner.phrase} is")
+                refuse(d, register.place, register.entry, f"tells where {owner.phrase} is")
             states = {
                 p
                 for s in machine.steps
@@ -296,7 +160,7 @@ class _Composer:
             out[register.place.index, owner.index] = sorted(states)
         return out
 
-    def _messages(self, register: _Register, reader: int, states: Sequence[int]) -> None:
+    def _messages(self, register: Register, reader: int, states: Sequence[int]) -> None:
         """The messages between setter and reader, and the transitions that send and take them."""
         b, place, who = self.b, register.place, self.owners[reader].name
         name, stem = _word(place.short), PurePath(register.entry.file).stem

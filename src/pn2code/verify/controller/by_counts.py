@@ -36,7 +36,7 @@ from types import MappingProxyType
 from typing import Any
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties.questions import ENDLESS, Questions
 from pn2code.verify.controller import diamonds
@@ -44,7 +44,7 @@ from pn2code.verify.controller.by_turns import Looked, group, loosened
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.left_over import nothing_left
-from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
+from pn2code.verify.controller.running import Running, chunks
 from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts

@@ -36,7 +36,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.terms import Apply, Exp, RecordExp
 from pn2code.net.binding import Parts, Planner
@@ -46,7 +46,6 @@ from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables
 from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.structure import bounds
-from pn2code.verify.controller.running import SUPERVISOR
 
 MANY = 3
 """Tokens that a place may hold to be forgotten."""

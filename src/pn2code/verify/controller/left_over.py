@@ -10,8 +10,9 @@ supervisor that has finished would take a message that comes later. Where progra
 
 from __future__ import annotations
 
+from pn2code.cell.partition import SUPERVISOR
 from pn2code.properties.questions import ENDLESS, Questions
-from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
+from pn2code.verify.controller.running import Running, chunks
 
 
 def nothing_left(asked: Questions, running: Running) -> int:

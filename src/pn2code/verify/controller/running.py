@@ -44,10 +44,10 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.whole_file import whole_file
-from pn2code.cell.partition import Channel, ChannelKind, Partition
+from pn2code.cell.partition import SUPERVISOR, Channel, ChannelKind, Partition
 from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder, looks
-from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
+from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
 from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
@@ -61,7 +61,6 @@ from pn2code.verify.exploring import time_reduction
 MOST_OWNERS = 250
 OWING = "has finished, but it owes an answer"
 """A step that stops the cell."""
-SUPERVISOR = 0
 _WORDS = 200
 """Of a line."""
 
@@ -283,7 +282,7 @@ def _check_transition(
         if arc.kind is ArcKind.OUTPUT and channel.writer == owner:
             put.append(channel)
         elif arc.kind is ArcKind.INPUT and channel.reader == owner:
-            if arc.place in taken or not _takes_one(arc):
+            if arc.place in taken or not arc.takes_one:
                 raise NotModelledError(
                     f"the net does not show that `{t.name}` takes only one message of `{name}`"
                 )
@@ -296,15 +295,6 @@ def _check_transition(
         readers = [c.reader for c in put if c.kind is kind]
         if len(set(readers)) < len(readers):
             raise NotModelledError(f"`{t.name}` writes two messages of one kind to the same reader")
-
-
-def _takes_one(arc: FlatArc) -> bool:
-    """Whether an input arc takes one token whatever happens."""
-    terms = arc.inscription.terms if arc.inscription is not None else ()
-    if len(terms) != 1 or terms[0].whole or terms[0].delay is not None:
-        return False
-    coefficient = terms[0].coefficient
-    return isinstance(coefficient, core.Lit) and coefficient.value == 1
 
 
 # --- the net -------------------------------------------------------------------------------------
