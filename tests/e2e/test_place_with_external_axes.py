@@ -29,7 +29,7 @@ from pn2code.geometry.reach_map import Task
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import Along, MoveExternal, MoveHome, MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of
 

@@ -17,7 +17,7 @@ from pn2code.cli.main import app
 from pn2code.geometry.reach_map import Task, reach_map
 from pn2code.robot.commands import MoveJoint
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.transforms import matrix_of
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]

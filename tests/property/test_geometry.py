@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from helpers.robot_cells import arm_kinematics, riveting_cell
 from helpers.thorough import amount
 from pn2code.robot.commands import Pose
-from pn2code.robot.motion import MotionFault, plan_lin, plan_ptp
+from pn2code.robot.motion import plan_lin, plan_ptp
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.transforms import (
     difference,
     inverse,

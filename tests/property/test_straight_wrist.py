@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 
 from helpers.robot_cells import arm_kinematics
 from pn2code.robot.commands import Pose
-from pn2code.robot.motion import MotionFault, MotionLimits, plan_lin
+from pn2code.robot.motion import plan_lin
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.time_law import MotionLimits
 from pn2code.robot.transforms import difference, matrix_of
 
 MODELS = (

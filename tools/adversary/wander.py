@@ -21,8 +21,8 @@ from pn2code.robot import scene
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Command, Wait
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import Still
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.trajectories import Still
 from pn2code.run.cell import _scripts, shared_directory
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import CellStoppedError, Engine, RobotRunner

@@ -21,7 +21,7 @@ from pn2code.robot.clamps import closed_on, closing, holding, nearest, on_nothin
 from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell

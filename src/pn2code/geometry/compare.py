@@ -37,10 +37,10 @@ from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Clearance
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.executor import turned_by
-from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
 from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
 

@@ -16,8 +16,9 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
 from pn2code.robot.executor import MotionKind, RobotExecutor
-from pn2code.robot.motion import MotionFault, Still, Trajectory
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.trajectories import Still, Trajectory
 from pn2code.robot.transforms import Array
 
 DIGITS = 7

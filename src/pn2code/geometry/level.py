@@ -14,10 +14,10 @@ from pn2code.geometry.answers import Verdict
 from pn2code.geometry.contents import Load
 from pn2code.geometry.legs import Leg
 from pn2code.robot.along import AlongTrajectory
-from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Trajectory
 from pn2code.robot.parts import carried_to
 from pn2code.robot.riders import MOST_TILT, leaning, tilt
 from pn2code.robot.robot_cell import CellRobot
+from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Trajectory
 
 _MOST_PIECES = 4000
 _SMALL = 1e-6

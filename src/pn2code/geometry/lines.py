@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from pn2code.robot.kinematics import Kinematics
-from pn2code.robot.motion import LinearTrajectory
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array, Flags, Numbers
 
 SAMPLES = 8

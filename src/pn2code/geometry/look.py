@@ -31,7 +31,7 @@ from pn2code.geometry.zones import Explore, Zones, sides_of
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
-from pn2code.robot.motion import other_branches
+from pn2code.robot.motion_checks import other_branches
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 

@@ -33,8 +33,8 @@ from pn2code.robot.commands import (
     tcp_of,
 )
 from pn2code.robot.kinematics import CHARACTERISTIC_LENGTH, Kinematics
-from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.robot_cell import CellRobot
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array, inverse, matrix_of
 
 _OF_ARM = (MoveHome, MoveAxes, MoveExternal)

@@ -23,10 +23,10 @@ from pn2code.geometry.lines import Follower
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.executor import turned_by
-from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
+from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.transforms import Array, Flags, Numbers
 
 FEW = 2

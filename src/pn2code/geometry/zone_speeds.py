@@ -17,7 +17,7 @@ from pn2code.geometry.contents import Load
 from pn2code.geometry.sweeps import RESOLUTION
 from pn2code.geometry.tracks import Knots, Track
 from pn2code.robot.along import AlongTrajectory
-from pn2code.robot.motion import JointTrajectory, LinearTrajectory
+from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
 

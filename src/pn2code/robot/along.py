@@ -15,21 +15,11 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.blend import Blended, law_through
 from pn2code.robot.carried import WithAxes
-from pn2code.robot.motion import (
-    Arc,
-    Law,
-    Line,
-    LinearTrajectory,
-    MotionFault,
-    MotionLimits,
-    Pace,
-    Still,
-    Swivel,
-    Way,
-    arc_pace,
-    led,
-    line_pace,
-)
+from pn2code.robot.motion import Pace, arc_pace, led, line_pace
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.tcp_path import Arc, Line, TcpPath
+from pn2code.robot.time_law import Law, MotionLimits
+from pn2code.robot.trajectories import LinearTrajectory, Still, Swivel
 from pn2code.robot.transforms import Array, inverse, matrix_of, pose_of, rotation_about
 
 _SAME = 1e-12
@@ -71,7 +61,7 @@ class Coordinated:
     """
 
     def __init__(
-        self, inner: Way, place: Array, begin: float, turn: float, shift: Array, carry: Array
+        self, inner: TcpPath, place: Array, begin: float, turn: float, shift: Array, carry: Array
     ) -> None:
         self.inner, self.name = inner, inner.name
         self._place, self._begin, self._turn = place, begin, turn

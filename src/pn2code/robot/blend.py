@@ -25,16 +25,11 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.kinematics import Kinematics
-from pn2code.robot.motion import (
-    LONGEST,
-    Law,
-    LinearTrajectory,
-    MotionFault,
-    MotionLimits,
-    Swivel,
-    led,
-    turning,
-)
+from pn2code.robot.motion import led
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.tcp_path import turning
+from pn2code.robot.time_law import LONGEST, Law, MotionLimits
+from pn2code.robot.trajectories import LinearTrajectory, Swivel
 from pn2code.robot.transforms import Array, pose_of, rotation_about
 
 LEAST_LINE = 1e-4
@@ -59,7 +54,7 @@ class Corner:
 
 
 class Blended:
-    """Lines from pose to pose with rounded corners; a `Way`, whose `length` is that of the lines.
+    """Lines from pose to pose with rounded corners; a `TcpPath`, whose `length` is that of the lines.
 
     `angle` is a bound here: how far the tool would turn if it turned everywhere as fast as on the line where it turns
     fastest.

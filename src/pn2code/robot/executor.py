@@ -41,22 +41,13 @@ from pn2code.robot.commands import (
 from pn2code.robot.digits import told_apart
 from pn2code.robot.external import ExternalAxis
 from pn2code.robot.kinematics import Kinematics
-from pn2code.robot.motion import (
-    LinearTrajectory,
-    MotionFault,
-    MotionLimits,
-    Still,
-    Swivel,
-    Trajectory,
-    check_axes,
-    other_branches,
-    plan_circ,
-    plan_lin,
-    plan_ptp,
-    swivel_of,
-)
+from pn2code.robot.motion import plan_circ, plan_lin, plan_ptp, swivel_of
+from pn2code.robot.motion_checks import check_axes, other_branches
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
+from pn2code.robot.time_law import MotionLimits
 from pn2code.robot.tool_use import expect_tool, tool_after
+from pn2code.robot.trajectories import LinearTrajectory, Still, Swivel, Trajectory
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,

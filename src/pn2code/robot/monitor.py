@@ -23,7 +23,7 @@ from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
 from pn2code.robot.executor import MotionKind
 from pn2code.robot.kinematics import Conditioning
-from pn2code.robot.motion import FaultKind
+from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, pose_of
 

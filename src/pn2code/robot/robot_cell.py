@@ -15,10 +15,10 @@ from pn2code.robot.commands import Pose
 from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Kinematics
 from pn2code.robot.model import Arm, Tool
-from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.time_law import MotionLimits
 from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones_table import Zone

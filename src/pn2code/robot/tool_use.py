@@ -7,7 +7,7 @@ tool_after("", ToolAction("lock", 1.0, Handling("couples", "gripper")))      # "
 from __future__ import annotations
 
 from pn2code.robot.commands import CHANGES, Command, Handling, ToolAction, tcp_of
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot
 
 

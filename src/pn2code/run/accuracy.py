@@ -8,7 +8,7 @@ from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.commands import Pose, tcp_of
 from pn2code.robot.executor import Motion
 from pn2code.robot.monitor import Sample
-from pn2code.robot.motion import LinearTrajectory
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import pose_of
 from pn2code.run.stops import Paused
 

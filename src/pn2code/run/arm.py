@@ -6,7 +6,7 @@ import time
 
 from pn2code.robot.commands import Command, Pose
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.transforms import describe
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.robot import ArmError

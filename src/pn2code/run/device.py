@@ -8,7 +8,8 @@ import numpy as np
 
 from pn2code.robot.commands import Command, Pose, ToolAction, Wait
 from pn2code.robot.executor import Motion, MotionKind
-from pn2code.robot.motion import MotionFault, Still
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.trajectories import Still
 
 _NOWHERE = Pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 

@@ -52,7 +52,7 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.parts import PartChange, PartFault
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.riders import tilted

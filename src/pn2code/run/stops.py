@@ -20,7 +20,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.executor import Motion
-from pn2code.robot.motion import Trajectory
+from pn2code.robot.trajectories import Trajectory
 from pn2code.robot.transforms import Array
 
 MOST = 1000

@@ -12,7 +12,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.robot import codes
 from pn2code.robot.commands import MoveLinear
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 
 

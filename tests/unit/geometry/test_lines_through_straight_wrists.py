@@ -13,7 +13,8 @@ from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
 from pn2code.geometry.tracks import ArmShape, Link, Track
 from pn2code.geometry.zone_speeds import slow_enough
-from pn2code.robot.motion import LinearTrajectory, plan_lin
+from pn2code.robot.motion import plan_lin
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import matrix_of
 
 

@@ -7,7 +7,7 @@ from tools.geometry.pairs import facing, moves
 
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.lines import SAMPLES, Follower
-from pn2code.robot.motion import LinearTrajectory
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array
 
 

@@ -18,7 +18,7 @@ from pn2code.replay.cell import at_start, describe
 from pn2code.robot.belts import stopping, told_to_run, until_stop
 from pn2code.robot.commands import Along, Handling, MoveExternal, ToolAction
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.parts import Part, PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load

@@ -13,7 +13,8 @@ from pn2code.geometry.zone_speeds import _Pace
 from pn2code.robot.blend import MOST_OFF, Blended, PassingLaw
 from pn2code.robot.commands import MoveLinear, Pose
 from pn2code.robot.executor import Motion, RobotExecutor
-from pn2code.robot.motion import LinearTrajectory, MotionFault
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.run import command_words
 

@@ -9,7 +9,9 @@ from helpers.robot_cells import riveting_cell
 from pn2code.robot.commands import MoveJoint
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import BRANCHES
-from pn2code.robot.motion import MotionFault, other_branches, plan_lin
+from pn2code.robot.motion import plan_lin
+from pn2code.robot.motion_checks import other_branches
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.transforms import pose_of
 
 START = np.radians([10.0, -100.0, 90.0, 20.0, 40.0, 60.0])

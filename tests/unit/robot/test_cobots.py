@@ -16,7 +16,7 @@ from pn2code.robot.commands import MoveJoint, MoveLinear, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import BRANCHES, Kinematics
 from pn2code.robot.model import MODELS, find_arm, find_tool
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of
 

@@ -28,7 +28,7 @@ from pn2code.robot.commands import (
     MoveLinear,
 )
 from pn2code.robot.executor import Motion, RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import Array, matrix_of, pose_of, rotation_about

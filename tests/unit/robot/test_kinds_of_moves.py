@@ -18,7 +18,8 @@ from pn2code.robot.commands import (
     Pose,
 )
 from pn2code.robot.executor import Motion, RobotExecutor
-from pn2code.robot.motion import LinearTrajectory, MotionFault
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import matrix_of, pose_of
 
 CELL = riveting_cell("good")

@@ -16,7 +16,11 @@ from pn2code.robot.commands import (
     Wait,
 )
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import Law, Line, MotionFault, Still, plan_lin, plan_ptp
+from pn2code.robot.motion import plan_lin, plan_ptp
+from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.tcp_path import Line
+from pn2code.robot.time_law import Law
+from pn2code.robot.trajectories import Still
 from pn2code.robot.transforms import difference, matrix_of
 
 NANOMETRE = 1e-9  # m: 1e-6 mm, what is promised for poses and lines

@@ -18,7 +18,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.model import MODELS, find_arm
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import difference, matrix_of, pose_of

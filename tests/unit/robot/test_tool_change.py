@@ -22,7 +22,7 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.parts import Part, PartFault, Parts, carried_to
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of

@@ -15,8 +15,9 @@ from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
 from pn2code.robot.executor import Motion, RobotExecutor
-from pn2code.robot.motion import LinearTrajectory, MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array, matrix_of
 from unit.geometry.test_spreads import corners
 from unit.robot.test_external_axes import DATA, SEAM, loaded, plate, plate_at, rail

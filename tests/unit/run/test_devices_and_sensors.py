@@ -11,7 +11,7 @@ from helpers.scripts import MemoryFiles, checked, diagnosed
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot.commands import MoveHome, ToolAction, Wait
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.sensors import Sensors
 from pn2code.run.sensors import load as load_sensors

@@ -20,7 +20,7 @@ from pn2code.channels import ChannelSpec, SharedDirectory
 from pn2code.diagnostics import NOWHERE
 from pn2code.robot.commands import Pose, Wait
 from pn2code.robot.executor import Motion
-from pn2code.robot.motion import Still
+from pn2code.robot.trajectories import Still
 from pn2code.run.choices import Choice, permitted
 from pn2code.run.engine import CellStoppedError, RobotRunner
 from pn2code.run.hand import Hand, Said

@@ -8,7 +8,7 @@ import statistics
 import numpy as np
 import pytest
 
-from pn2code.robot.motion import Still
+from pn2code.robot.trajectories import Still
 from pn2code.robot.transforms import Array
 from pn2code.run.cycles import Cycle, Cycles, Spread, table
 from pn2code.run.stops import Paused, Rate, Stops, parse

@@ -17,8 +17,9 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg
 from pn2code.robot.commands import Command, MoveAxes, MoveHome
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import MotionFault, Still
+from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.trajectories import Still
 from pn2code.robot.transforms import Array
 
 _SAMPLES = 9
