@@ -25,9 +25,10 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.trajectories import Still
 from pn2code.run.cell import _scripts, shared_directory
 from pn2code.run.device import DeviceExecutor
-from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
+from pn2code.run.engine import Engine
 from pn2code.run.files import RobotFiles
 from pn2code.run.record import RunRecord
+from pn2code.run.runner import CellStoppedError, RobotRunner
 from pn2code.run.sensors import load as load_sensors
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.toolchain import build

@@ -19,9 +19,10 @@ from pn2code.replay import cell as cells
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of
 from pn2code.run.command_words import kind_and_label
-from pn2code.run.engine import Engine, RobotRunner
+from pn2code.run.engine import Engine
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import ActionRecord, PartRecord, RunRecord
+from pn2code.run.runner import RobotRunner
 
 Json = dict[str, Any]
 

@@ -1,14 +1,10 @@
-"""Lock-step co-simulation: the compiled supervisor, the robots' script interpreters and the arms on
-one simulated clock.
+"""Lock-step co-simulation: the compiled supervisor, the robots' script interpreters, the arms, on one simulated clock.
 
-Time moves from event to event (a motion ends, a wait ends, the supervisor's net wants to be woken).
-At each event everybody who
-can go on does so, in a fixed order, until nobody can: the supervisor runs one cycle of its
-execution scheme, then each robot's
-interpreter runs until it waits for a file or starts a command. All messages go through the files of
-the shared directory, written
-and read by the code that would do so on a real cell. Between events the arms are sampled for
-clearance, limits and singularity.
+Time moves from event to event (a motion ends, a wait ends, the supervisor's net wants to be woken). At each event
+everybody who can go on does so, in a fixed order, until nobody can: the supervisor runs one cycle of its execution
+scheme, then each robot's interpreter runs until it waits for a file or starts a command. All messages go through the
+files of the shared directory, written and read by the code that would do so on a real cell. Between events the arms are
+sampled for clearance, limits and singularity.
 
 Nothing here reads the wall clock, so two runs give the same trace, byte for byte.
 """
@@ -23,49 +19,30 @@ from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
-from pn2code.base.frozen import record
 from pn2code.cell.partition import Partition
-from pn2code.emission.output import Block, OutputFile
+from pn2code.emission.output import OutputFile
 from pn2code.properties.failing import Failing
 from pn2code.robot.backend import Backend
-from pn2code.robot.belts import until_stop
-from pn2code.robot.clamps import (
-    Held,
-    closed_on,
-    closing,
-    holding,
-    nearest,
-    on_nothing,
-    shut,
-    taken_along,
-)
 from pn2code.robot.commands import (
     Command,
     Handling,
-    Move,
     MoveCircular,
-    MoveExternal,
     MoveJoint,
     MoveLinear,
     Pose,
     ToolAction,
 )
-from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
+from pn2code.robot.executor import Motion, RobotExecutor, turned
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import PartChange, PartFault
-from pn2code.robot.parts_table import PartKind
-from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
-from pn2code.robot.zones import ZoneWatch
+from pn2code.robot.transforms import Array, pose_of
 from pn2code.run.accuracy import distance, off_line
 from pn2code.run.command_words import kind_and_label, words
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.failing import failed_in
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Said
-from pn2code.run.handling import PartKeeper
 from pn2code.run.record import (
     ActionRecord,
     ActivityRecord,
@@ -74,9 +51,11 @@ from pn2code.run.record import (
     PartRecord,
     RunRecord,
 )
+from pn2code.run.runner import CellStoppedError, RobotRunner, StoppedByHand
 from pn2code.run.sensors import Sensors
 from pn2code.run.stops import Stops
 from pn2code.run.supervisor import SupervisorProcess
+from pn2code.run.surroundings import Surroundings
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
 from pn2code.tdl.requests import (
@@ -110,69 +89,6 @@ class Observer(Protocol):
 
     def ended(self, engine: Engine) -> None:
         """The run is over; `engine.record` has the verdict."""
-
-
-@record
-class RobotRunner:
-    """One robot or device: its script's interpreter, its arm if it has one, and what it is doing.
-
-    Args:
-        script: file name, for messages.
-        blocks: which lines of the script implement which net element.
-    """
-
-    name: str
-    script: str
-    interpreter: Interpreter
-    files: RobotFiles
-    executor: RobotExecutor | DeviceExecutor
-    blocks: tuple[Block, ...] = ()
-    motion: Motion | None = None
-    line: int = 0
-    activity: str = ""
-    waiting: AwaitFile | None = None
-    asking: Sense | None = None
-    finished: bool = False
-
-    def element_at(self, line: int) -> str:
-        """The net transition that a script line implements, "" if none."""
-        inside = [b for b in self.blocks if b.kind == "transition" and b.first <= line <= b.last]
-        return min(inside, key=lambda b: b.last - b.first).element if inside else ""
-
-    def at(self, line: int) -> str:
-        """A line of its script, for messages, with the net transition that it implements."""
-        where = self.element_at(line)
-        return f"{self.script}:{line}" + (f" (net transition {where})" if where else "")
-
-    def tool_action(self) -> str:
-        """The tool action under way, "" if none."""
-        command = self.motion.command if self.motion else None
-        return command.action if isinstance(command, ToolAction) else ""
-
-    @property
-    def arm(self) -> RobotExecutor | None:
-        """What moves; None: a device."""
-        return self.executor if isinstance(self.executor, RobotExecutor) else None
-
-    def joints(self, t: float) -> Array:
-        """Joint position (rad) of an arm at a time not before the last event."""
-        assert self.arm is not None
-        return self.arm.q if self.motion is None else self.motion.q(t)
-
-    def path(self, times: Array) -> Array:
-        """Joint positions (n, 6) of an arm at many times, none before the last event."""
-        assert self.arm is not None
-        if self.motion is None:
-            return np.tile(self.arm.q, (len(times), 1))
-        return self.motion.sample(times)
-
-
-class CellStoppedError(Exception):
-    """The cell must stop; the message says why, in full."""
-
-
-class StoppedByHand(CellStoppedError):  # noqa: N818
-    """Somebody wants the cell to stop."""
 
 
 def _nobody() -> str:
@@ -214,8 +130,7 @@ class Engine:
     failing: Failing = field(default_factory=Failing)
     now: float = 0.0
     activity: str = ""
-    parts: PartKeeper = field(init=False)
-    zones: ZoneWatch = field(init=False)
+    around: Surroundings = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
@@ -230,8 +145,7 @@ class Engine:
         """Of each transition by name: its XML id, and to whom it writes messages."""
         divided = self.partition
         readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
-        self.parts = PartKeeper(self.cell, self.backend)
-        self.zones = ZoneWatch(self.cell)
+        self.around = Surroundings(self.cell, self.backend, self.robots)
         self._ids = {t.name: t.id for t in divided.net.transitions}
         self._owner_of = {
             t.name: divided.owners[o].name
@@ -291,17 +205,11 @@ class Engine:
 
     def _at_rest(self) -> bool:
         """Whether no arm moves. Devices may go on: they have nothing to bring to rest."""
-        return all(r.motion is None for r in self._arms())
-
-    def _arms(self) -> list[RobotRunner]:
-        return [r for r in self.robots if r.arm is not None]
+        return all(r.motion is None for r in self.around.arms())
 
     def _begin_run(self) -> None:
-        try:
-            self.parts.begin()
-        except PartFault as fault:
-            raise CellStoppedError(str(fault)) from None
-        self._sample(0.0, {r.name: r.joints(0.0) for r in self._arms()})
+        self.around.begin()
+        self._sample(0.0, {r.name: r.joints(0.0) for r in self.around.arms()})
         for observer in self.observers:
             observer.begun(self)
 
@@ -443,19 +351,8 @@ class Engine:
     def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
         if looks is not None:
-            return self._sees(*looks, self.sensors.at.get(request.sensor, 0.0))
+            return self.around.sees(*looks, self.sensors.at.get(request.sensor, 0.0), self.now)
         return self.sensors.ask(robot.name, request.sensor)
-
-    def _sees(self, name: str, kind: str, at: float) -> bool:
-        """Whether a part is at a place, an arm in a zone, an axis of a device where it is seen."""
-        self._look_at_turntables()
-        joints = {r.name: r.joints(self.now) for r in self._arms()}
-        device, dot, axis = name.partition(".")
-        if dot:
-            return self.cell.robot(device).is_at(axis, joints[device], at)
-        if name in self.cell.zones:
-            return self.zones.occupied(name, joints, self.parts.parts.present.values())
-        return self.parts.parts.is_seen(name, kind)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""
@@ -471,11 +368,12 @@ class Engine:
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
-            motion = robot.executor.begin(self._stopped(robot, command), self.now)
+            motion = robot.executor.begin(
+                self.around.until_stop(robot, command, self.now), self.now
+            )
         except MotionFault as fault:
             raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
-        self._expect_let_go(robot, motion, line)
-        self._expect_riders_stay(robot, motion, line)
+        self.around.expect_free(robot, motion, line, self.now)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
@@ -490,99 +388,6 @@ class Engine:
                     "duration": command.duration,
                 }
             )
-
-    def _stopped(self, robot: RobotRunner, command: Command) -> Command:
-        """Belts run until a part comes to their stop."""
-        if robot.arm is None or not robot.arm.robot.is_device or not robot.arm.robot.carrying:
-            return command
-        self._look_at_turntables()
-        return until_stop(robot.arm.robot, self.parts.parts, command)
-
-    def _run_out(self, robot: RobotRunner, motion: Motion) -> None:
-        """What belts that have come to rest have taken along stands there, or on something else."""
-        if robot.arm is None or not robot.arm.robot.is_device:
-            return
-        line = turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)
-        if not line:
-            return
-        self._look_at_turntables()
-        try:
-            settled = self.parts.run_out(line)
-        except PartFault as fault:
-            raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
-        for change in settled:
-            self.record.parts.append(PartRecord(self.now, robot.name, change))
-
-    def _expect_part(self, robot: RobotRunner, motion: Motion) -> None:
-        """A clamp that has closed has a part between its jaws, standing there or in a tool."""
-        if robot.arm is None or not isinstance(motion.command, MoveExternal):
-            return
-        device = robot.arm.robot
-        ends = [motion.trajectory.q(t) for t in (0.0, motion.duration)]
-        for held in closing(device, ends[0], ends[1]):
-            self._look_at_turntables()
-            joints = {r.name: r.joints(self.now) for r in self._arms()}
-            there = self.parts.parts.everywhere(joints)
-            near = nearest(self.cell, held, there)
-            if near.off > 0.0:
-                raise CellStoppedError(f"{robot.at(robot.line)}: {on_nothing(held, near)}")
-        for held in shut(device, ends[0], ends[1]):
-            self._expect_at_rest(robot, held)
-
-    def _expect_at_rest(self, robot: RobotRunner, held: Held) -> None:
-        """Nobody is on the way with the part on which a clamp has just closed."""
-        parts = self.parts.parts.present.values()
-        for other in self._arms():
-            motion = other.motion
-            if other.arm is None or motion is None or not isinstance(motion.command, Move):
-                continue
-            if motion.ends <= self.now + 1e-12:
-                continue
-            arm = other.arm.robot
-            way = motion.trajectory.q(0.0), motion.q(self.now)
-            why = closed_on(self.cell, held, arm, way, (parts, turned(arm, motion)))
-            if why:
-                raise CellStoppedError(f"{robot.at(robot.line)}: {why}")
-
-    def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
-        """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
-        if robot.arm is None or not isinstance(motion.command, Move):
-            return
-        arm, q = robot.arm.robot, robot.arm.q
-        present = self.parts.parts.present.values()
-        stands = {r.name: r for r in self._arms()}
-        for part, frame in taken_along(arm, q, present, turned(arm, motion)):
-            for held in holding(self.cell, part.kind, frame):
-                own = stands[held.device.name].joints(self.now)
-                if held.holds(own):
-                    why = held.words(robot.name, part.name, own)
-                    raise CellStoppedError(
-                        f"{robot.at(line)}: {why}, part at {describe(pose_of(frame))}"
-                    )
-
-    def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
-        """What stands on a turntable that begins to turn stays there, or the cell stops."""
-        if robot.arm is None:
-            return
-        belts = turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)
-        for plate in sorted(turned(robot.arm.robot, motion)):
-            self._look_at_turntables()
-            try:
-                self.parts.parts.turn(plate, belts if plate in belts else frozenset())
-            except PartFault as fault:
-                raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
-
-    def _look_at_turntables(self) -> None:
-        """Where they are now, and which of them turn, counts for what is handled."""
-        parts = self.parts.parts
-        turning: set[str] = set()
-        for other in self._arms():
-            assert other.arm is not None
-            if other.arm.robot.axes.tables:
-                parts.stand(other.name, other.joints(self.now))
-                if other.motion is not None and other.motion.ends > self.now + 1e-12:
-                    turning |= turned(other.arm.robot, other.motion)
-        parts.turning = frozenset(turning)
 
     def _held_up(self, robot: RobotRunner, motion: Motion, stops: Stops) -> Motion:
         """The motion with the stops that are drawn for it."""
@@ -621,7 +426,7 @@ class Engine:
     def _advance(self, target: float) -> None:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
         times = self._instants(target)
-        paths = {r.name: r.path(times) for r in self._arms()}
+        paths = {r.name: r.path(times) for r in self.around.arms()}
         self.monitor.expect(paths)
         for i, t in enumerate(times):
             self._sample(float(t), {name: path[i] for name, path in paths.items()})
@@ -654,25 +459,19 @@ class Engine:
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
-        self._run_out(robot, motion)
-        self._expect_part(robot, motion)
+        for change in self.around.run_out(robot, motion, self.now):
+            self.record.parts.append(PartRecord(self.now, robot.name, change))
+        self.around.expect_part(robot, motion, self.now)
         if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
             self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)
 
     def _handle(self, robot: RobotRunner, handling: Handling) -> None:
         """What an action that has ended has done to a part."""
-        tcp = matrix_of(robot.arm.pose) if robot.arm is not None else None
-        self._look_at_turntables()
-        try:
-            change = self.parts.handle(robot.name, handling, tcp)
-        except PartFault as fault:
-            raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
-        if change.effect == "removes":
-            self._expect_unclamped(robot, self.cell.parts[handling.part], change)
+        change, settled = self.around.handle(robot, handling, self.now)
         if robot.arm is not None:
             self.monitor.use(robot.name, robot.arm.tool)
-        for one in (change, *self.parts.parts.settled):
+        for one in (change, *settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
             {
@@ -683,17 +482,6 @@ class Engine:
                 "part": change.part,
             }
         )
-
-    def _expect_unclamped(self, robot: RobotRunner, kind: PartKind, change: PartChange) -> None:
-        """A part that leaves the cell is in no clamp that holds it."""
-        stands = {r.name: r for r in self._arms()}
-        for held in holding(self.cell, kind, matrix_of(change.pose)):
-            q = stands[held.device.name].joints(self.now)
-            if held.holds(q):
-                why = held.words(robot.name, change.part, q, "removes")
-                raise CellStoppedError(
-                    f"{robot.at(robot.line)}: {why}, part at {describe(change.pose)}"
-                )
 
     def _heard(self, event: Event) -> None:
         """Events of an interpreter: occurrences of net transitions, messages consumed and written."""
@@ -752,7 +540,7 @@ class Engine:
         )
         verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning)
         self.record.sample(verdict)
-        for robot, seen in zip(self._arms(), verdict.samples, strict=True):
+        for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
                 off = off_line(robot.motion, seen)
                 self.record.note_error("off the line on linear moves", off)
@@ -761,39 +549,21 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
-        self._expect_level(t, joints)
+        if why := self.around.slides_off(joints):
+            self.now = t
+            raise CellStoppedError(f"{why}; {self._doing()}")
         self._expect_slow(t, joints)
-
-    def _expect_level(self, t: float, joints: Mapping[str, Array]) -> None:
-        """What stands on a part that is carried does not slide off."""
-        present = self.parts.parts.present.values()
-        if all(p.up is None for p in present):
-            return
-        for name, q in joints.items():
-            if why := tilted(self.cell.robot(name), q, present):
-                self.now = t
-                raise CellStoppedError(f"{why}; {self._doing()}")
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""
-        if not self.zones.limited:
+        found = self.around.too_fast(t, joints)
+        if found is None:
             return
-        parts = self.parts.parts.present.values()
-        moving = {r.name: r.motion for r in self._arms() if r.motion is not None}
-        there = {name: joints[name] for name in moving}
-        speeds = {
-            name: moving[name].trajectory.qd(t - moving[name].began)
-            for name in self.zones.in_limited(there, parts)
-        }
-        found = self.zones.too_fast({n: joints[n] for n in speeds}, speeds, parts)
-        if found is not None:
-            self.now = t
-            self.record.too_fast = BrokenZone(
-                found.zone.name, t, found.link, found.speed, found.point
-            )
-            self.backend.light_zone(found.zone.name)
-            who = self.cell.robot(found.robot).words
-            raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
+        self.now = t
+        self.record.too_fast = BrokenZone(found.zone.name, t, found.link, found.speed, found.point)
+        self.backend.light_zone(found.zone.name)
+        who = self.cell.robot(found.robot).words
+        raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""

@@ -15,9 +15,10 @@ from pn2code.robot.executor import Motion
 from pn2code.robot.transforms import Array
 from pn2code.run.arm import MovingArm
 from pn2code.run.command_words import kind_and_label
-from pn2code.run.engine import Engine, RobotRunner
+from pn2code.run.engine import Engine
 from pn2code.run.journal import Journal
 from pn2code.run.robot import Arm, Ended, RobotExit, RobotPlayer
+from pn2code.run.runner import RobotRunner
 from pn2code.tdl.requests import Event, Marked
 from pn2code.tdl.requests import Scalar as SensedValue
 

@@ -18,11 +18,12 @@ from pn2code.robot.commands import Command
 from pn2code.robot.executor import Motion
 from pn2code.run.choices import permitted
 from pn2code.run.command_words import kind_and_label
-from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
+from pn2code.run.engine import Engine
 from pn2code.run.hand import BY, Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
 from pn2code.run.punctuality import Punctuality
 from pn2code.run.record import Interference, RunRecord
+from pn2code.run.runner import CellStoppedError, RobotRunner
 from pn2code.run.stops import paused, resumed
 from pn2code.tdl.requests import (
     Event,
@@ -79,7 +80,7 @@ class RealtimeEngine(Engine):
                     break
                 if self.now - self._sampled >= self.cell.motion.sample:
                     self._sampled = self.now
-                    self._sample(self.now, {r.name: r.joints(self.now) for r in self._arms()})
+                    self._sample(self.now, {r.name: r.joints(self.now) for r in self.around.arms()})
                     for observer in self.observers:
                         observer.advanced(self)
                 if not any(moved):

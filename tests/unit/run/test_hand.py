@@ -22,10 +22,10 @@ from pn2code.robot.commands import Pose, Wait
 from pn2code.robot.executor import Motion
 from pn2code.robot.trajectories import Still
 from pn2code.run.choices import Choice, permitted
-from pn2code.run.engine import CellStoppedError, RobotRunner
 from pn2code.run.hand import Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
 from pn2code.run.realtime import RealtimeEngine
+from pn2code.run.runner import CellStoppedError, RobotRunner
 from pn2code.run.stops import Paused, paused, resumed
 from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.requests import FileError, Sense
