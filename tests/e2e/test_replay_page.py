@@ -542,6 +542,34 @@ def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium:
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
 
 
+@pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
+def test_by_what_a_run_has_failed_can_be_read(
+    options: dict[str, Any], tmp_path: Path, chromium: Any
+) -> None:
+    """Also where it is not the place at which it ended: *failure: Finished* said nothing."""
+    shown = with_arm(described(tmp_path, PAIR))
+    failed = ["{ Mark.Supervisor'Result 1 = [scrap] }"]
+    shown["verdict"] = {
+        "word": "finished",
+        "reason": "",
+        "final": ["Top.Finished"],
+        "failed": failed,
+    }
+    with opened(chromium, **options) as browser:
+        browser.open(written(tmp_path, shown))
+        chip = browser.page.locator("#verdict .chip.bad")
+        condition = failed[0][2:-2]
+        assert chip.inner_text() == f"failure: {condition}"
+        assert chip.get_attribute("title") == f"failure: {condition}; finished in Finished"
+        assert browser.ask("() => document.documentElement.scrollWidth <= innerWidth")
+        if options:
+            browser.page.get_by_role("button", name="More", exact=True).click()
+        browser.page.get_by_role("tab", name="Run", exact=True).click()
+        row = browser.page.locator("#panel-run dt", has_text="failure").locator("+ dd")
+        assert row.inner_text() == condition
+        assert browser.errors == []
+
+
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
     """Also where the window shows a part of the page, and of what occurs just then."""
     file = tmp_path / "replay.html"
