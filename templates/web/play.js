@@ -146,6 +146,7 @@ class Page {
       this.bar?.progress(said);
       this.space?.progress(said);
     } else if (said.asking !== undefined || said.answer !== undefined) this.asking?.hear(said);
+    else if (said.arms !== undefined) this.game?.armsEnded(said);
     else if (said.ok === false) this.said(said);
   }
 
