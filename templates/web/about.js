@@ -87,7 +87,7 @@ export class GameFile {
       return;
     }
     const page = el("a", { href: answer.result.address, target: "_blank", rel: "noopener noreferrer", text: "Open its page" });
-    this.armsTold.replaceChildren(page, ". The run ends with this play, or by itself; then it can be started again. Its records go with this play: `pn2code run` keeps them.");
+    this.armsTold.replaceChildren(page, ". The run ends with this play, or by itself; then it can be started again. Its records go with this play; those of pn2code run are kept.");
     page.focus();
   }
 

@@ -68,7 +68,7 @@ class WithArms:
 
         Args:
             ended: is told by a thread of its own when the run that was begun has ended: whether it has finished, and
-                the last of what it has printed.
+                what it has said of it.
             clock: seconds since any moment.
 
         Raises:
@@ -135,4 +135,5 @@ def _watch(process: subprocess.Popen[bytes], said: Path, ended: Callable[[Json],
     with suppress(OSError):  # the folder has gone with the game
         text = said.read_text(encoding="utf-8", errors="replace")
         after = text.partition(_SAYS)[2].partition("\n")[2]
-        ended({"arms": "finished" if code == 0 else "ended", "said": after.strip()[-_MOST:]})
+        why = after.strip().partition("\n\n")[0]  # then come the figures of the run
+        ended({"arms": "finished" if code == 0 else "ended", "said": why[:_MOST]})
