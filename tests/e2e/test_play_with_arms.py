@@ -12,6 +12,8 @@ from queue import Queue
 import pytest
 
 from helpers import netbuilder
+from helpers.browser import launched, opened
+from helpers.legible import complaints
 from helpers.played import Talk, served
 from helpers.shown import PAIR
 from pn2code.play.trouble import Json, Trouble
@@ -39,6 +41,29 @@ def test_it_is_run_once_and_ends_with_the_game(root: Path) -> None:
     while answers(address) and time.monotonic() < until:
         time.sleep(0.1)
     assert not answers(address)
+
+
+@pytest.mark.cc
+def test_the_page_leads_to_it_and_says_what_of_a_cell_is_asked(root: Path) -> None:
+    with (
+        served(root / "examples/minimal") as server,
+        launched() as chromium,
+        opened(chromium) as browser,
+    ):
+        page = browser.page
+        page.goto(server.url)
+        page.wait_for_selector("body[data-ready=true]")
+        page.get_by_role("tab", name="Ask", exact=True).click()
+        page.get_by_text("All that the cell can do is explored, as its programs run").wait_for()
+        page.get_by_role("button", name="Ask", exact=True).click()
+        page.get_by_text("38 states of the cell as its programs run").wait_for()
+        page.get_by_role("tab", name="Game", exact=True).click()
+        assert complaints(browser) == []
+        page.get_by_role("button", name="Run it with arms").click()
+        link = page.get_by_role("link", name="Open its page")
+        link.wait_for()
+        assert "#act=" in link.get_attribute("href")
+        assert complaints(browser) == [] and browser.errors == []
 
 
 def test_a_net_has_none(tmp_path: Path) -> None:
