@@ -2,7 +2,7 @@
 /** The net itself: its declarations, what is wrong with it; the seed, and traces. */
 
 import { el } from "./dom.js";
-import { diagnostic, number } from "./parts.js";
+import { diagnostic, number, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
 
@@ -62,9 +62,39 @@ export class GameFile {
     this.file = el("input", { type: "file", accept: ".jsonl", "aria-label": "A trace to be loaded", onchange: () => this.load() });
     const begin = el("button", { text: "New game", title: "The initial marking again; the game so far is given up", onclick: async () => said(await link.ask("reset")) });
     this.note = el("p", { class: "note" });
+    this.arms = el("div", { class: "with-arms" });
+    if (data.arms) this.offerArms();
     const row = (/** @type {string} */ name, /** @type {any} */ value) => el("label", { class: "row" }, el("span", { text: name }), value);
-    host.append(el("div", { class: "form" }, row("Seed of the choices", this.seed), row("Load a trace", this.file), el("p", { class: "buttons" }, save, begin), this.note,
+    host.append(el("div", { class: "form" }, row("Seed of the choices", this.seed), row("Load a trace", this.file), el("p", { class: "buttons" }, save, begin), this.note, this.arms,
       el("p", { class: "note", text: `${data.title}, ${data.net.places.length} places, ${data.net.transitions.length} transitions, ${data.net.pages.length} pages. ${data.generator}` })));
+  }
+
+  offerArms() {
+    const start = el("button", { text: "Run it with arms", onclick: () => this.startArms(start) });
+    this.armsTold = el("div", { class: "note", "aria-live": "polite" },
+      "Supervisor, robots and devices run in real time on a page of their own, on which you are a robot or the fault: what a camera sees, which command fails, what comes late.");
+    this.arms.append(el("p", { class: "buttons" }, start), this.armsTold);
+  }
+
+  /** @param {any} start */
+  async startArms(start) {
+    start.disabled = true;
+    this.armsTold.replaceChildren("The cell is started …");
+    const answer = await this.link.ask("arms");
+    start.disabled = false;
+    if (!answer.ok) {
+      this.armsTold.replaceChildren(wrong(answer));
+      return;
+    }
+    const page = el("a", { href: answer.result.address, target: "_blank", rel: "noopener noreferrer", text: "Open its page" });
+    this.armsTold.replaceChildren(page, ". The run ends with this play, or by itself; then it can be started again. Its records go with this play; those of pn2code run are kept.");
+    page.focus();
+  }
+
+  /** @param {{arms: string, said: string}} said */
+  armsEnded({ arms, said }) {
+    if (arms === "finished") this.armsTold.replaceChildren("The run with arms has finished.");
+    else this.armsTold.replaceChildren("The run with arms has ended:", el("pre", { text: said || "without a word" }));
   }
 
   /** @param {any} state */

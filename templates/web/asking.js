@@ -17,9 +17,10 @@ export class Asking {
   /**
    * @param {HTMLElement} host
    * @param {Link} link
+   * @param {boolean} isCell
    * @param {(answer: any) => void} said
    */
-  constructor(host, link, said) {
+  constructor(host, link, isCell, said) {
     this.link = link;
     this.said = said;
     /** @type {Map<number, any>} */
@@ -27,8 +28,9 @@ export class Asking {
     this.field = field({ label: "Property", placeholder: "deadlock free", button: "Ask", work: (text) => this.ask(text) });
     this.field.input.value = EXAMPLES[0];
     this.list = el("ol", { class: "plain answers", "aria-live": "polite", "aria-label": "Answers" });
+    const what = isCell ? "All that the cell can do is explored, as its programs run" : "The whole state space of the net is explored";
     host.append(this.field.root,
-      el("p", { class: "note", text: `The whole state space of the net is explored, from its initial marking on; you can play meanwhile. Examples: ${EXAMPLES.join("; ")}.` }),
+      el("p", { class: "note", text: `${what}, from its initial marking on; you can play meanwhile. Examples: ${EXAMPLES.join("; ")}.` }),
       this.list);
   }
 
@@ -50,7 +52,7 @@ export class Asking {
   hear(said) {
     if (said.asking !== undefined) {
       const row = this.rows.get(said.asking);
-      if (row) row.told.textContent = `exploring … ${said.nodes.toLocaleString("en")} markings`;
+      if (row) row.told.textContent = `${said.what || "exploring"} … ${said.nodes.toLocaleString("en")} ${said.what ? "states" : "markings"}`;
       return;
     }
     const row = this.rows.get(said.answer);
@@ -61,7 +63,8 @@ export class Asking {
       return;
     }
     const kind = { yes: "good", no: "bad" }[/** @type {string} */ (said.verdict)] ?? "open";
-    row.told.textContent = `${said.nodes.toLocaleString("en")} markings, ${said.arcs.toLocaleString("en")} occurrences${said.complete ? "" : ", not all"}`;
+    const ofCell = said.states === null ? "" : ` of the net, ${said.states.toLocaleString("en")} states of the cell as its programs run`;
+    row.told.textContent = `${said.nodes.toLocaleString("en")} markings, ${said.arcs.toLocaleString("en")} occurrences${ofCell}${said.complete ? "" : ", not all"}`;
     row.item.insertBefore(el("p", {}, el("span", { class: `chip ${kind}`, text: said.verdict }), said.why ? ` ${said.why}` : ""), row.told);
     for (const text of said.assumes) row.item.append(el("p", { class: "note", text: `assumes: ${text}` }));
     for (const problem of said.rows) row.item.append(diagnostic(problem));

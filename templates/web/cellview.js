@@ -58,8 +58,8 @@ export class CellView {
     this.legend = el("p", { class: "status" });
     pane.append(el("header", {}, el("h2", { text: "Cell" }), this.buttons, this.pathsButton), this.host, this.legend);
     this.paths = run.cell.robots.map((/** @type {any} */ r) => (run.motion[r.name] ? new Path(run.motion[r.name]) : null));
-    if (missing || !THREE) {
-      this.fail(missing || "three.js is not in this page");
+    if (missing || !THREE || run.cell.unread) {
+      this.fail(missing || run.cell.unread || "three.js is not in this page");
       return;
     }
     try {

@@ -1,6 +1,8 @@
 // @ts-check
 /** The data of the page: JSON, with packed arrays (docs/replay.md) that become typed arrays. */
 
+import { readCells } from "./gltf.js";
+
 /** @type {Record<string, any>} */
 const ARRAYS = {
   u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array,
@@ -63,5 +65,6 @@ export async function load() {
   const waiting = [];
   unpack(data.runs, waiting);
   await Promise.all(waiting);
+  await readCells(data.runs);
   return data;
 }

@@ -3,8 +3,6 @@
 
 const THREE = /** @type {any} */ (globalThis).THREE;
 
-/** Of descriptions of earlier versions: how long a measured gap is shown after it was measured, in measuring intervals. */
-const STAYS = 2.5;
 const MOST = 12;
 
 /** @typedef {{pair: string[], distance: number, points: Float32Array | number[]}} Gap */
@@ -70,8 +68,8 @@ export class Gaps {
       else high = middle;
     }
     const i = notes[low - 1];
-    const { near = Infinity, step = 0, lasts = Infinity } = gaps;
-    if (i === undefined || gaps.distance[i] > near || t > gaps.t[i] + STAYS * lasts) return null;
+    const { near, step } = gaps;
+    if (i === undefined || gaps.distance[i] > near) return null;
     const pair = gaps.pairs[gaps.pair[i]];
     const k = notes[low];
     const goes = Math.min(step, gaps.t[k] - gaps.t[i]);

@@ -88,7 +88,7 @@ class Page {
       this.bar = new PlayBar(byId("transport"), link, position, { said, breakpoints: this.breakpoints });
       this.past = new Past(add("Steps"), link, position, (k) => this.bar?.go(k));
       this.space = new SpaceView(add("Space"), link, position, said);
-      this.asking = new Asking(add("Ask"), link, said);
+      this.asking = new Asking(add("Ask"), link, data.cell, said);
       this.evaluate = new Evaluate(add("Evaluate"), link);
       if (this.data.monitors) this.plots = new Plots(add("Monitors"), position);
     }
@@ -146,6 +146,7 @@ class Page {
       this.bar?.progress(said);
       this.space?.progress(said);
     } else if (said.asking !== undefined || said.answer !== undefined) this.asking?.hear(said);
+    else if (said.arms !== undefined) this.game?.armsEnded(said);
     else if (said.ok === false) this.said(said);
   }
 

@@ -15,7 +15,7 @@ import { NetView } from "./netview.js";
 import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
-import { chipOf } from "./verdict.js";
+import { chipOf, conditionsOf } from "./verdict.js";
 import { Watch } from "./watch.js";
 
 /** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
@@ -123,6 +123,7 @@ export class ReplayPage {
     const row = (/** @type {string} */ name, /** @type {string} */ value) => [el("dt", { text: name }), el("dd", { text: value })];
     const list = el("dl", {}, ...facts.flatMap((/** @type {string[]} */ f) => row(f[0], f[1])));
     if (verdict.reason) list.append(...row("reason", verdict.reason));
+    for (const condition of conditionsOf(verdict)) list.append(...row("failure", condition));
     if (verdict.final.length) list.append(...row("ended in", verdict.final.join(", ")));
     if (course.refused) list.append(...row(`step ${course.refused.step}`, `${course.refused.transition}: ${course.refused.why}`));
     if (loopOf(course) !== null) list.append(...row("lasso", `the steps from step ${course.loop + 1} on are repeated for ever`));

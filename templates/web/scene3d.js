@@ -11,17 +11,12 @@ const CREASE = Math.cos((38 * Math.PI) / 180);
 const SAME = 0.999;
 
 /**
- * The triangles of a mesh of the description, with normals that are smooth but across sharp edges.
- * @param {any} mesh
+ * Triangles with normals that are smooth but across sharp edges.
+ * @param {Float32Array} position
+ * @param {Uint16Array | Uint32Array} index
  */
-export function geometryOf(mesh) {
-  const n = mesh.points.length / 3;
-  const position = new Float32Array(3 * n);
-  for (let axis = 0; axis < 3; axis++) {
-    const scale = mesh.size[axis] / 65535;
-    for (let i = 0; i < n; i++) position[3 * i + axis] = mesh.low[axis] + mesh.points[axis * n + i] * scale;
-  }
-  const index = mesh.triangles;
+export function smoothed(position, index) {
+  const n = position.length / 3;
   const faces = index.length / 3;
   const flat = new Float32Array(3 * faces);
   const length = new Float32Array(faces);
@@ -116,16 +111,16 @@ export class CellScene {
     this.scene = new THREE.Scene();
     /** How many marks have their place. */
     this.placed = 0;
-    /** @type {Map<number, any>} */
+    /** @type {Map<any, any>} */
     this.geometries = new Map();
-    /** @type {Map<string, any>} */
+    /** @type {Map<any, any>} */
     this.materials = new Map();
     this.isPlain = false;
     /** Nothing smaller is shown (m). */
     this.size = 0;
     this.light();
     for (const body of cell.bodies) {
-      const group = this.group(body.visuals);
+      const group = this.group(body.node);
       group.name = body.name;
       this.scene.add(group);
     }
@@ -150,28 +145,28 @@ export class CellScene {
     };
   }
 
-  /** @param {number} mesh */
-  geometry(mesh) {
-    let found = this.geometries.get(mesh);
+  /** @param {any} read of the glTF */
+  geometry(read) {
+    let found = this.geometries.get(read);
     if (!found) {
-      found = geometryOf(this.cell.meshes[mesh]);
-      this.geometries.set(mesh, found);
+      found = smoothed(read.attributes.position.array, read.index.array);
+      this.geometries.set(read, found);
     }
     return found;
   }
 
-  /** @param {number[]} rgba */
-  material(rgba) {
-    const key = rgba.join(" ");
-    let found = this.materials.get(key);
+  /** @param {any} read of the glTF, which has the light of a colour; it is drawn as a screen has it */
+  material(read) {
+    let found = this.materials.get(read);
     if (!found) {
-      const colour = new THREE.Color(rgba[0], rgba[1], rgba[2]);
-      const isMetal = Math.max(...rgba.slice(0, 3)) - Math.min(...rgba.slice(0, 3)) < 0.08;
+      const color = read.color.clone().convertLinearToSRGB();
+      const rgb = color.toArray();
+      const isMetal = Math.max(...rgb) - Math.min(...rgb) < 0.08;
+      const { opacity, transparent, side } = read;
       found = new THREE.MeshPhongMaterial({
-        color: colour, shininess: isMetal ? 45 : 28, specular: isMetal ? 0x3a3d42 : 0x26282b,
-        transparent: rgba[3] < 1, opacity: rgba[3], side: rgba[3] < 1 ? THREE.DoubleSide : THREE.FrontSide,
+        color, opacity, transparent, side, shininess: isMetal ? 45 : 28, specular: isMetal ? 0x3a3d42 : 0x26282b,
       });
-      this.materials.set(key, found);
+      this.materials.set(read, found);
     }
     return found;
   }
@@ -237,17 +232,17 @@ export class CellScene {
     return found;
   }
 
-  /** @param {any[][]} visuals */
-  group(visuals) {
+  /** @param {number | undefined} node of the glTF; undefined: nothing */
+  group(node) {
     const group = new THREE.Group();
-    for (const [mesh, frame, rgba, scale] of visuals) {
-      if (!this.cell.meshes[mesh]?.triangles.length) continue;
-      const object = new THREE.Mesh(this.geometry(mesh), this.material(rgba));
+    for (const read of this.cell.nodes[/** @type {number} */ (node)]?.children ?? []) {
+      const object = new THREE.Mesh(this.geometry(read.geometry), this.material(read.material));
       object.fine = object.material;
-      object.grows = Math.max(...scale) || 1;
-      place(object, frame);
-      object.matrix.scale(new THREE.Vector3(...scale));
-      object.castShadow = object.receiveShadow = rgba[3] >= 1;
+      object.matrixAutoUpdate = false;
+      object.matrix.compose(read.position, read.quaternion, read.scale);
+      object.matrixWorldNeedsUpdate = true;
+      object.grows = object.matrix.getMaxScaleOnAxis() || 1;
+      object.castShadow = object.receiveShadow = !object.fine.transparent;
       group.add(object);
     }
     return group;
@@ -256,7 +251,7 @@ export class CellScene {
   /** @param {any} robot */
   robot(robot) {
     const links = robot.links.map((/** @type {any} */ link) => {
-      const group = this.group(link.visuals);
+      const group = this.group(link.node);
       group.name = `${robot.name}/${link.name}`;
       this.scene.add(group);
       return group;
@@ -267,7 +262,7 @@ export class CellScene {
 
   /** @param {any} part */
   part(part) {
-    const group = this.group(this.cell.kinds[part.kind] ?? []);
+    const group = this.group(this.cell.kinds[part.kind]);
     group.visible = false;
     this.scene.add(group);
     return group;

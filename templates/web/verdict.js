@@ -22,6 +22,14 @@ const WORDS = {
 export const hasFailed = (verdict) => Boolean(verdict.failed?.length);
 
 /**
+ * What a run has failed by, where that is what tokens say and not where they are: conditions as cell.toml has them.
+ * @param {any} verdict
+ * @returns {string[]}
+ */
+export const conditionsOf = ({ failed, final }) =>
+  (failed ?? []).filter((/** @type {string} */ x) => !final.includes(x)).map((/** @type {string} */ x) => x.replace(/^\{\s*|\s*\}$/g, ""));
+
+/**
  * Nothing where it has not ended.
  * @param {any} run
  */
@@ -33,7 +41,8 @@ export function chipOf({ verdict, course, clock }) {
   const kind = isBad ? "bad" : clock === "seconds" ? "good" : "plain";
   // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
   const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-  const text = hasFailed(verdict) ? `failure: ${places || word}` : places ? `${word} in ${places}` : word;
-  const why = (verdict.failed ?? []).filter((/** @type {string} */ x) => !verdict.final.includes(x));
-  return el("span", { class: `chip ${kind}`, text, title: [verdict.reason, ...why].filter(Boolean).join("; ") });
+  const ended = places ? `${word} in ${places}` : word;
+  const why = conditionsOf(verdict);
+  const text = !hasFailed(verdict) ? ended : why.length ? `failure: ${why.join("; ")}` : `failure: ${places || word}`;
+  return el("span", { class: `chip ${kind}`, text, title: [text, why.length ? ended : "", verdict.reason].filter(Boolean).join("; ") });
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+import socket
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from helpers.lively import Person, Running, endless, running, token_of
 from helpers.played import Refused, Talk
 from helpers.processes import pn2code
+from pn2code.live.view import LiveView
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +130,20 @@ def test_a_run_is_told_from_its_beginning_to_its_end(root: Path, tmp_path: Path)
     assert updates[-1]["now"]["punctuality"]["answers"] >= 2
     times = [u["t"] for u in updates]
     assert times == sorted(times)
+
+
+def test_a_server_that_has_to_end_does_so_without_a_fault(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """As when the terminal, or who manages services, tells all processes of a run to end."""
+    with LiveView(0) as view:
+        host, port = view.address.split("/")[2].split(":")
+        with socket.create_connection((host, int(port))) as talk:  # it listens before it answers
+            talk.sendall(b"GET / HTTP/1.0\r\nHost: elsewhere\r\n\r\n")
+            assert talk.recv(1)
+        view._process.send_signal(signal.SIGTERM)
+        assert view._process.wait(60) == 0
+    assert capfd.readouterr().err == ""
 
 
 def test_the_run_goes_on_when_its_server_is_killed(root: Path, tmp_path: Path) -> None:

@@ -12,6 +12,14 @@ import pytest
 from helpers.browser import launched, opened
 from helpers.lively import HOSTILE, endless, hostile, running
 
+LINES = """(selector) => {
+    const range = document.createRange();
+    range.selectNodeContents(document.querySelector(selector));
+    const tops = [...range.getClientRects()].map((r) => r.top);
+    return 1 + Math.round((Math.max(...tops) - Math.min(...tops)) / 16);
+}"""
+"""In how many lines the text of the first such element stands."""
+
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
@@ -40,6 +48,13 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
             "() => JSON.stringify(live.page.run.net.transitions.map(t => t.name))"
         )
         assert page.locator("img").count() == 0
+        # On a phone as well: no word is cut in two.
+        page.set_viewport_size({"width": 340, "height": 700})
+        page.get_by_role("button", name="More", exact=True).click()
+        page.get_by_role("tab", name="State", exact=True).click()
+        lines = [browser.ask(LINES, words) for words in ("#live", ".state .sides th")]
+        assert lines == [1, 1]
+        page.set_viewport_size({"width": 1280, "height": 720})
         # Back in time, and to what happens now.
         browser.ask("() => live.seek(0.1)")
         assert page.get_by_role("button", name="Live").get_attribute("aria-pressed") == "false"

@@ -163,6 +163,7 @@ class TestGames:
             assert talk.ask("step")["ok"]
             answer = talk.hear("answer")
             assert (answer["answer"], answer["verdict"]) == (number, "no")
+            assert answer["states"] is None, "it is no cell"
             assert talk.ask("open", number=number)["ok"]
             assert talk.state["enabled"] == [] and talk.state["later"] is None
             talk.ask("ask", property="deadlok free")
@@ -200,6 +201,15 @@ class TestMessages:
         with Talk(server) as talk:
             answer = talk.ask("evaluate", text="1 + " * 20_000 + "1")
             assert "more than 20,000 characters" in answer["message"]
+
+
+@pytest.mark.cc
+def test_what_is_asked_of_a_cell_is_about_its_programs(root: Path) -> None:
+    with served(root / "examples/minimal") as server, Talk(server) as talk:
+        talk.ask("ask", property="deadlock free")
+        answer = talk.hear("answer")
+        assert answer["ok"] and answer["verdict"] == "no"
+        assert answer["states"] > answer["nodes"] > 0
 
 
 def test_hostile_names_are_only_texts(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
 from pn2code.replay import run as runs
-from pn2code.replay.arrays import packed, packed_reals
+from pn2code.replay.arrays import packed, packed_bytes, packed_reals
 from pn2code.replay.motion import Motion
 from pn2code.replay.page import page
 from pn2code.robot.transforms import Array
@@ -542,6 +542,34 @@ def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium:
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
 
 
+@pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
+def test_by_what_a_run_has_failed_can_be_read(
+    options: dict[str, Any], tmp_path: Path, chromium: Any
+) -> None:
+    """Also where it is not the place at which it ended: *failure: Finished* said nothing."""
+    shown = with_arm(described(tmp_path, PAIR))
+    failed = ["{ Mark.Supervisor'Result 1 = [scrap] }"]
+    shown["verdict"] = {
+        "word": "finished",
+        "reason": "",
+        "final": ["Top.Finished"],
+        "failed": failed,
+    }
+    with opened(chromium, **options) as browser:
+        browser.open(written(tmp_path, shown))
+        chip = browser.page.locator("#verdict .chip.bad")
+        condition = failed[0][2:-2]
+        assert chip.inner_text() == f"failure: {condition}"
+        assert chip.get_attribute("title") == f"failure: {condition}; finished in Finished"
+        assert browser.ask("() => document.documentElement.scrollWidth <= innerWidth")
+        if options:
+            browser.page.get_by_role("button", name="More", exact=True).click()
+        browser.page.get_by_role("tab", name="Run", exact=True).click()
+        row = browser.page.locator("#panel-run dt", has_text="failure").locator("+ dd")
+        assert row.inner_text() == condition
+        assert browser.errors == []
+
+
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
     """Also where the window shows a part of the page, and of what occurs just then."""
     file = tmp_path / "replay.html"
@@ -589,6 +617,51 @@ def test_without_webgl_the_rest_of_the_page_works(shown: Shown, chromium: Any) -
         before = browser.ask("() => replay.page.clock.k")
         keys.press("ArrowRight")
         assert browser.ask("() => replay.page.clock.k") == before + 1
+
+
+def test_shapes_are_drawn_as_the_gltf_has_them(tmp_path: Path, chromium: Any) -> None:
+    """In the colours of the cell, of which glTF has the light; points and frames to 0.01 mm."""
+    with opened(chromium) as browser:
+        browser.open(written(tmp_path, with_arm(described(tmp_path, PAIR))))
+        found = browser.ask("""() => {
+            const [{ links }] = replay.page.cell.cell.robots;
+            return links.map((link) => link.children.map((o) => {
+                const { color, opacity } = o.fine;
+                o.geometry.computeBoundingBox();
+                const { min, max } = o.geometry.boundingBox;
+                return [...color.toArray(), opacity, ...min.toArray(), ...max.toArray()];
+            }));
+        }""")
+        expected = [0.8, 0.4, 0.1, 1.0, -0.1, -0.1, -0.1, 0.1, 0.1, 0.1]
+        assert found == [[pytest.approx(expected, abs=1e-5)]] * 2 + [[]]
+        assert browser.errors == []
+
+
+ELSEWHERE = json.dumps(
+    {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "http://127.0.0.1:9/points"}],
+    }
+).encode()
+
+
+@pytest.mark.parametrize("glb", [b"", b"glTF no more than that", b"{}", ELSEWHERE])
+def test_shapes_that_cannot_be_read_leave_the_rest(
+    glb: bytes, tmp_path: Path, chromium: Any
+) -> None:
+    run = with_arm(described(tmp_path, PAIR))
+    run["cell"]["glb"] = packed_bytes(glb)
+    with opened(chromium) as browser:
+        browser.open(written(tmp_path, run))
+        assert "its glTF cannot be read" in browser.page.locator(".missing").inner_text()
+        browser.page.keyboard.press("ArrowRight")
+        assert browser.ask("() => replay.page.clock.k") == 1
+        assert len(browser.asked) == 1, "nothing but the page itself"
 
 
 DRAWN_BY = """
@@ -816,7 +889,7 @@ def test_tools_in_use_and_clamps_are_told(tmp_path: Path, chromium: Any) -> None
         {"parent": 0, "child": k, "frame": unit, "axis": [1, 0, 0], "moves": k - 1, "slides": True}
         for k in (1, 2, 3)
     ]
-    links = [{"name": name, "visuals": []} for name in ("stand", "door", "vice_1", "vice_2")]
+    links = [{"name": name} for name in ("stand", "door", "vice_1", "vice_2")]
     press = {"name": "press", "device": True, "base": unit, "home": [0.9, 0.05, 0.06], "tcp": 0}
     press |= {"links": links, "joints": jaws, "clamps": {"vice": [1, 2]}, "lower": [], "upper": []}
     run["cell"]["robots"].append(press)

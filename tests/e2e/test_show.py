@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from helpers import netbuilder
 from helpers.shown import PAIR, recorded
@@ -36,7 +38,7 @@ class TestRun:
         text = (run / "replay.html").read_text(encoding="utf-8")
         assert text.startswith("<!DOCTYPE html>") and "SPDX-License-Identifier: MIT" in text
         described = json.loads((run / "run.json").read_text(encoding="utf-8"))
-        assert described["pn2code"] == {"run": 1}
+        assert described["pn2code"] == {"run": 2}
         assert described["kind"] == "run" and described["verdict"]["word"] == "finished"
         assert [r["name"] for r in described["cell"]["robots"]] == list(described["motion"])
 
@@ -67,9 +69,27 @@ class TestRun:
     def test_without_three_js_a_run_has_a_page_all_the_same(
         self, run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(three, "PACKAGE", "a_package_that_is_not_there")
+        missing = replace(three.LIBRARY, package="a_package_that_is_not_there")
+        monkeypatch.setattr(three, "LIBRARY", missing)
         assert pn2code("show", run, "-o", tmp_path / "flat.html") == 0
-        assert "three.js is not installed: pip install" in (tmp_path / "flat.html").read_text()
+        assert "three.js r130 is not installed: pip install" in (tmp_path / "flat.html").read_text()
+
+    def test_the_cell_as_gltf(self, run: Path, tmp_path: Path) -> None:
+        assert pn2code("show", run, "-o", tmp_path / "cell.glb") == 0
+        scene = trimesh.load(tmp_path / "cell.glb")
+        (robot,) = json.loads((run / "run.json").read_text())["cell"]["robots"]
+        names = {name for link in robot["links"] for name in [f"{robot['name']}/{link['name']}"]}
+        assert names <= set(scene.graph.nodes) and len(scene.geometry) > 5
+        high = scene.bounds[:, 1]
+        assert high[0] < 0.1 and 1.0 < high[1] < 4.0, "y is above"
+
+    def test_a_gltf_has_one_run_with_arms(self, run: Path, tmp_path: Path) -> None:
+        glb = tmp_path / "cell.glb"
+        assert pn2code("show", run, "--compare", run, "-o", glb) == 2
+        net = netbuilder.write(PAIR, tmp_path / "net.cpn")
+        trace = recorded(net, tmp_path / "a.trace.jsonl", 20)
+        assert pn2code("show", trace, net, "-o", glb) == 2
+        assert not glb.exists()
 
     def test_no_page_where_none_is_wanted(self, root: Path, tmp_path: Path) -> None:
         cell, flags = root / "examples/minimal", ("--no-pictures", "--unchecked", "--no-replay")

@@ -13,7 +13,8 @@ from helpers import netbuilder
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.replay import trace as traces
-from pn2code.replay.arrays import packed, packed_reals
+from pn2code.replay.arrays import packed_bytes, packed_reals
+from pn2code.replay.gltf import Gltf
 from pn2code.semantics.game.token_game import Game
 from pn2code.trace.token_game import trace
 
@@ -82,26 +83,27 @@ def with_arm(
     times = np.array([tempo * k for k in range(count + 1)])
     unit = [1.0 if i % 5 == 0 else 0.0 for i in range(16)]
     away = [*unit[:3], 1.0, *unit[4:]]
-    box = {
-        "low": [-0.1, -0.1, -0.1],
-        "size": [0.2, 0.2, 0.2],
-        "points": packed([65535 * (i >> axis & 1) for axis in range(3) for i in range(8)]),
-        "triangles": packed([0, 1, 3, 0, 3, 2, 4, 7, 5, 4, 6, 7]),
-    }
+    gltf = Gltf()
+    corners = np.array([[0.1 if i >> axis & 1 else -0.1 for axis in range(3)] for i in range(8)])
+    box = gltf.geometry(corners, np.array([[0, 1, 3], [0, 3, 2], [4, 7, 5], [4, 6, 7]]))
+    seen = [gltf.shape(box, unit, (0.8, 0.4, 0.1, 1), (1, 1, 1)) for _ in range(2)]
+    nodes = [
+        gltf.node(f"arm/{name}", [one]) for name, one in zip(("base", "tip"), seen, strict=True)
+    ]
+    gltf.scene("cell", nodes)
     arm = {
         "name": "arm",
         "base": unit,
         "home": [0.0],
         "links": [
-            {"name": name, "visuals": [[0, unit, [0.8, 0.4, 0.1, 1], [1, 1, 1]]]}
-            for name in ("base", "tip")
+            {"name": name, "node": node} for name, node in zip(("base", "tip"), nodes, strict=True)
         ],
         "joints": [{"parent": 0, "child": 1, "frame": unit, "axis": [0, 0, 1], "moves": 0}],
         "tcp": 2,
         "lower": [-3.0],
         "upper": [3.0],
     }
-    arm["links"].append({"name": "tcp", "visuals": []})
+    arm["links"].append({"name": "tcp"})
     arm["joints"].append({"parent": 1, "child": 2, "frame": away, "axis": [0, 0, 1], "moves": -1})
     parties = [{"name": "supervisor", "kind": "supervisor"}, {"name": "arm", "kind": "robot"}]
     message = {"channel": "done", "place": 0, "from": 1, "to": 0, "what": "write"}
@@ -124,7 +126,7 @@ def with_arm(
         },
         "cell": {
             "robots": [arm],
-            "meshes": [box],
+            "glb": packed_bytes(gltf.glb()),
             "bodies": [],
             "kinds": {},
             "parts": [],

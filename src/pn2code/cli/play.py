@@ -72,6 +72,7 @@ def play(
     from pn2code.play.app import application
     from pn2code.play.loading import load
     from pn2code.play.seats import Seats
+    from pn2code.play.with_arms import WithArms
     from pn2code.web.guard import Guard, new_token
     from pn2code.web.serving import PortTaken, listening, open_browser, serve, url
 
@@ -81,22 +82,25 @@ def play(
             param_hint="--input / --trace",
         )
     d = Diagnostics()
-    loaded = load(net, parse_values(settings), d, inputs=inputs)
+    values = parse_values(settings)
+    loaded = load(net, values, d, inputs=inputs)
     if loaded is None:
         stop(d, form)
     if loaded.opened is None:
         print_diagnostics(d.sorted(), form)
     else:
         print_diagnostics((i for i in d.sorted() if _is_urgent(i)), form)
-    seats = None
+    seats = arms = None
     try:
         if loaded.opened is not None:
             seats = Seats(loaded, seed=seed, trace=trace)
             _try(seats, trace, form)
+            if loaded.opened.config is not None and inputs is None:
+                arms = WithArms(net, values, seats.folder / "with-arms")
         with listening(port) as (socket, found):
             token = new_token()
             address = url(found, token)
-            app = Guard(application(loaded, seats, found), token, found)
+            app = Guard(application(loaded, seats, found, arms), token, found)
 
             def begun() -> None:
                 typer.echo(f"{loaded.path.name}: {address}")
@@ -108,6 +112,8 @@ def play(
     except PortTaken as why:
         _refuse(str(why), "give another one, or leave --port out", form)
     finally:
+        if arms is not None:
+            arms.close()
         if seats is not None:
             seats.close()
     if loaded.opened is None:

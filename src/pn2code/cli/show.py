@@ -43,6 +43,8 @@ EPILOG = """Examples:
   pn2code show net.dead-40.trace.jsonl net.cpn -o replay.html
 
   pn2code show run --compare other-run -o both.html
+
+  pn2code show run -o cell.glb
 """
 
 
@@ -57,7 +59,12 @@ def show(
         ),
     ] = None,
     output: Annotated[
-        Path, typer.Option(*OUTPUT_FLAGS, metavar="FILE", help="The HTML file to write.")
+        Path,
+        typer.Option(
+            *OUTPUT_FLAGS,
+            metavar="FILE",
+            help="The HTML file to write; `*.glb`: the cell as glTF, for other programs.",
+        ),
     ] = Path("replay.html"),
     compare: Annotated[
         Path | None,
@@ -85,6 +92,9 @@ def show(
     from pn2code.replay.differences import differences, sentences
     from pn2code.replay.page import page
 
+    is_gltf = output.suffix.lower() == ".glb"
+    if is_gltf and compare is not None:
+        _refuse("a `.glb` has one run", "leave out --compare, or write an HTML file", form)
     for path in (output, *([description] if description else [])):
         if why := why_file_unwritable(path, makes_folders=True):
             _refuse(f"cannot write `{path}`: {why}", "give another file with -o", form)
@@ -93,21 +103,22 @@ def show(
     other = None if compare is None else _described(compare, net, values, steps, files, form)
     names = _names(run, compare) if compare is not None else ("", "")
     try:
-        texts = {output: page(shown, other, names=names)}
+        made = _gltf(shown, form) if is_gltf else page(shown, other, names=names).encode("utf-8")
+        contents = {output: made}
         said = sentences(differences(shown, other)) if other is not None else []
     except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as problem:
         if not any(path is not None and _is_description(path) for path in (run, compare)):
             raise  # of traces the description is our own
         _refuse(f"the description of a run is damaged: {problem}", "run the cell again", form)
     if description is not None:
-        texts[description] = text_of(shown)
-    for path, text in texts.items():
+        contents[description] = text_of(shown).encode("utf-8")
+    for path, content in contents.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            path.write_bytes(content)
         except OSError as problem:
             _refuse(f"cannot write `{path}`: {os_reason(problem)}", "give another file", form)
-    typer.echo(f"{output}: {_sentence(shown, texts[output])}")
+    typer.echo(f"{output}: {_sentence(shown, len(made))}")
     for sentence in said:
         typer.echo(sentence)
     runs = ((shown, "trace"),) if other is None else ((shown, "first run"), (other, "second run"))
@@ -137,12 +148,20 @@ def _names(one: Path, other: Path) -> tuple[str, str]:
     return names[0], names[1]
 
 
-def _sentence(shown: Json, text: str) -> str:
+def _gltf(shown: Json, form: Format) -> bytes:
+    """What is to be seen of the cell."""
+    from pn2code.replay.arrays import unpacked
+
+    if not shown.get("cell"):
+        _refuse("this run has no arms: there is no glTF of it", "write an HTML file", form)
+    return unpacked(shown["cell"]["glb"]).tobytes()
+
+
+def _sentence(shown: Json, size: int) -> str:
     steps = shown["course"]["steps"]
     arms = len((shown.get("cell") or {}).get("robots", ()))
-    size = len(text.encode("utf-8")) / 1e6
     with_arms = f", {arms} arm{'s' * (arms != 1)}" if arms else ""
-    return f"{steps:,} step{'s' * (steps != 1)}{with_arms}, {size:.1f} MB"
+    return f"{steps:,} step{'s' * (steps != 1)}{with_arms}, {size / 1e6:.1f} MB"
 
 
 def _is_description(run: Path) -> bool:

@@ -159,8 +159,8 @@ def _verified(said: Json) -> tuple[str, list[Finding]]:
         )
         for p in said.get("properties", ())
     ]
-    found += [_answer(c["check"], c, c["says"]) for c in said.get("controller") or ()]
-    found += [_answer(m["check"], m, m["says"]) for m in said.get("medium") or ()]
+    found += [_answer(_titled(c["check"]), c, c["says"]) for c in said.get("controller") or ()]
+    found += [_answer(_begun(m["check"]), m, m["says"]) for m in said.get("medium") or ()]
     found += [Finding("note", NOTED, x) for x in said.get("notes") or ()]
     found += _cycles(durations) if durations else []
     whole = "all" if said["complete"] else f"a part ({said['why']}): {said['nodes']:,} of its"
@@ -171,6 +171,19 @@ def _verified(said: Json) -> tuple[str, list[Finding]]:
         part = "" if cell["complete"] else ", not to the end"
         says += f" The cell as its programs run has {cell['states']:,} states{part}."
     return says, found
+
+
+def _titled(check: str) -> str:
+    """A check of the supervisor as the screen has it, with the name by which files and documents know it."""
+    from pn2code.verify.controller.control_types import (
+        TITLES,
+    )  # what it loads is not needed for the rest
+
+    return f"{TITLES[check]} ({check})" if check in TITLES else check
+
+
+def _begun(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 def _longest(row: Json, durations: Json | None) -> str:

@@ -38,6 +38,7 @@ from pn2code.play.loading import Loaded
 from pn2code.play.page import page
 from pn2code.play.seats import MOST_WAITING, Full, Seat, Seats
 from pn2code.play.trouble import Json, Trouble, of_game
+from pn2code.play.with_arms import WithArms
 from pn2code.semantics.game.enabling import GameError
 from pn2code.trace.json_text import is_deep
 from pn2code.web.guard import HOSTS
@@ -48,22 +49,26 @@ MOST_QUESTIONS = 2
 """Properties that are explored at the same time, of all pages together."""
 
 
-def application(loaded: Loaded, seats: Seats | None, port: int) -> Starlette:
+def application(
+    loaded: Loaded, seats: Seats | None, port: int, arms: WithArms | None = None
+) -> Starlette:
     """The application.
 
     Args:
         loaded: the net.
         seats: its games; None: it has errors, and is only shown.
         port: of the server.
+        arms: runs the cell; None: it is none that can be run.
     """
-    made = page(describe(loaded), tuple(f"{host}:{port}" for host in HOSTS))
+    described = {**describe(loaded), "arms": arms is not None}
+    made = page(described, tuple(f"{host}:{port}" for host in HOSTS))
 
     async def show(request: Request) -> Response:
         return HTMLResponse(made.html, headers={"content-security-policy": made.policy})
 
     routes: list[Any] = [Route("/", show)]
     if seats is not None:
-        hall = _Hall(seats)
+        hall = _Hall(seats, arms)
         routes += [
             WebSocketRoute("/ws", hall.play),
             Route("/trace/{seat}", hall.save, methods=["GET"]),
@@ -75,8 +80,9 @@ def application(loaded: Loaded, seats: Seats | None, port: int) -> Starlette:
 class _Hall:
     """Brings pages and seats together."""
 
-    def __init__(self, seats: Seats) -> None:
+    def __init__(self, seats: Seats, arms: WithArms | None) -> None:
         self._seats = seats
+        self._arms = arms
         self._askers = ThreadPoolExecutor(MOST_QUESTIONS, thread_name_prefix="ask")
 
     # --- a page ----------------------------------------------------------------------------------
@@ -144,6 +150,8 @@ class _Hall:
                     seat.asking.set()
             case "ask":
                 tell({"id": number, **self._ask(seat, said, tell)})
+            case "arms" if self._arms is not None:
+                self._do(seat, number, partial(_run_with_arms, self._arms, seat), tell)
             case "open":
                 trace = seat.answers.get(said["number"]) if _is_number(said.get("number")) else None
                 if trace is None:
@@ -225,6 +233,14 @@ class _Hall:
         done = await loop.run_in_executor(seat.worker, work)
         remove = BackgroundTask(file.unlink, missing_ok=True)
         return Response(page_json(done), media_type="application/json", background=remove)
+
+
+def _run_with_arms(arms: WithArms, seat: Seat) -> Json:
+    try:
+        address = arms.address(lambda said: seat.tell(said))
+        return {"ok": True, "result": {"address": address}}
+    except Trouble as trouble:
+        return {"ok": False, "message": trouble.message, "rows": trouble.rows}
 
 
 async def _receive(stream: AsyncIterator[bytes], file: Path) -> bool:

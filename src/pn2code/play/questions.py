@@ -31,6 +31,7 @@ from pn2code.verdict.whole import (
 )
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.result import Exploration
 
 MOST_SECONDS = 600.0
 MOST_STATES = 20_000_000
@@ -56,10 +57,13 @@ def ask(
     typist: Typist,
     asked: Question,
     folder: Path,
-    tell: Callable[[int, int], None],
+    tell: Callable[[int, int, str], None],
     interrupted: Callable[[], bool],
 ) -> Json:
     """The answer: `verdict`, `why`, `complete`, `nodes`, `arcs`, and `trace`, a file that shows it, if there is one.
+
+    Of a cell `nodes` and `arcs` are those of its net, `states` those of the cell as its programs run, where it was
+    looked at. `tell` hears markings, occurrences, and what is explored beside the net; "": nothing yet.
 
     Raises:
         Trouble: the property is wrong, or the net has no state space.
@@ -73,6 +77,12 @@ def ask(
     # Half of the machine is for whoever plays meanwhile.
     limits = Limits(max_states=asked.states, deadline=Deadline.after(asked.seconds), threads=1)
     checks = Checks(controller=False, channel_model=False)
+    under_way = ""
+
+    def begin(text: str) -> None:
+        nonlocal under_way
+        under_way = text.removesuffix(" ...")
+
     with ExitStack() as stack:
         stack.enter_context(trace_folder(folder, wanted=True, needed=True))
         options = ExploreOptions(
@@ -82,7 +92,10 @@ def ask(
             questions=plan.questions,
             predicates=plan.properties.predicates,
             evidence=stack.enter_context(own.unnamed_runs(plan, folder)),
-            progress=lambda row: tell(int(row.get("states", 0)), int(row.get("arcs", 0))),
+            progress=lambda row: tell(
+                int(row.get("states", 0)), int(row.get("arcs", 0)), under_way
+            ),
+            stage=begin,
             interrupted=interrupted,
         )
         try:
@@ -90,12 +103,13 @@ def ask(
             if looked is None:
                 raise of_diagnostics(d, "the state space cannot be explored")
             said = conclude(looked, opened, plan, limits, folder, d, checks)
+            cell = looked.control.found if looked.control is not None else None
         except GameError as error:
             raise of_game(error) from None
-    return _told(said, d, interrupted())
+    return _told(said, cell, d, interrupted())
 
 
-def _told(said: Said, d: Diagnostics, is_stopped: bool) -> Json:
+def _told(said: Said, cell: Exploration | None, d: Diagnostics, is_stopped: bool) -> Json:
     if not said.answers:
         raise Trouble("there is no answer", rows(d.sorted()))
     answer = said.answers[0]
@@ -104,7 +118,8 @@ def _told(said: Said, d: Diagnostics, is_stopped: bool) -> Json:
         "text": answer.about.holds,
         "verdict": answer.answer,
         "why": "stopped" if is_stopped and answer.answer == "inconclusive" else answer.why,
-        "complete": said.found.complete,
+        "complete": said.found.complete and (cell is None or cell.complete),
+        "states": None if cell is None else cell.nodes,
         "nodes": said.found.nodes,
         "arcs": said.found.arcs,
         "value": answer.value,

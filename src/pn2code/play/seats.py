@@ -67,8 +67,8 @@ class Seat:
             if not isinstance(text, str) or not text.strip():
                 raise Trouble("a property is expected, e.g. `deadlock free`")
 
-            def tell(nodes: int, arcs: int) -> None:
-                self.tell({"asking": number, "nodes": nodes, "arcs": arcs})
+            def tell(nodes: int, arcs: int, what: str) -> None:
+                self.tell({"asking": number, "nodes": nodes, "arcs": arcs, "what": what})
 
             done = ask(loaded, typist, Question(text), folder, tell, stop.is_set)
             trace = done.pop("trace")

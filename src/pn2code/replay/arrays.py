@@ -63,6 +63,11 @@ def _packed(array: Numbers, name: str) -> Packed:
     return {"type": name, "length": int(array.size), "deflate": text}
 
 
+def packed_bytes(data: bytes) -> Packed:
+    """A file."""
+    return _packed(np.frombuffer(data, np.uint8), "u8")
+
+
 def packed_text(text: str) -> Packed:
     """A long text."""
     data = zlib.compress(text.encode("utf-8", "replace"), 9)

@@ -1,9 +1,10 @@
 """The cell of a description: arms, tools, scene and parts, as geometry and frames.
 
-    described = describe(robot_cell)      # {"robots": [...], "meshes": [...], "bodies": [...], "kinds": {...}, ...}
+    described = describe(robot_cell)      # {"robots": [...], "bodies": [...], "kinds": {...}, "glb": {...}, ...}
 
-Frames are 4x4 matrices by rows, lengths in m, angles in rad. What is fixed in a robot hangs on a link; the page turns
-the joints. Nothing here depends on what happens in a run.
+Frames are 4x4 matrices by rows, lengths in m, angles in rad. What is to be seen is one glTF, of which links, bodies and
+kinds name their nodes; what is fixed in a robot hangs on a link, and the page turns the joints. Nothing here depends on
+what happens in a run.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from pn2code.replay.arrays import packed_bytes
+from pn2code.replay.gltf import Gltf
 from pn2code.replay.meshes import Meshes
 from pn2code.robot.commands import CHANGES
 from pn2code.robot.geometry import bodies, body_of
@@ -22,7 +25,7 @@ from pn2code.robot.parts import PartChange, Parts
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tools_table import ToolKind
-from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
+from pn2code.robot.transforms import Array, matrix_of, rotation_about, rotation_xyz
 from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
 from pn2code.run.record import PartRecord
@@ -35,16 +38,28 @@ _TOOL = "tool_"
 
 def describe(cell: RobotCell) -> Json:
     """Everything that is to be seen, and how the arms move."""
-    store = Meshes()
-    found: Json = {
-        "robots": [_robot(r, store) for r in cell.moving],
-        "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
-        "kinds": {
-            kind.name: _looks(body_of(kind.shape).looks, store)
+    gltf = Gltf()
+    store = Meshes(gltf)
+    arms = [_robot(r, store) for r in cell.moving]
+    shown = [gltf.node(b.name, _looks(b.looks, store)) for b in bodies(cell)]
+    kinds = {
+        kind.name: gltf.node(
+            kind.name,
+            _looks(body_of(kind.shape).looks, store)
             if isinstance(kind, PartKind)
-            else _seen_of(kind.tool.urdf, store)
-            for kind in cell.kinds
-        },
+            else _seen_of(kind.tool.urdf, store),
+        )
+        for kind in cell.kinds
+    }
+    gltf.scene("cell", [*shown, *(_standing(arm, gltf) for arm in arms)])
+    if kinds:
+        gltf.scene("parts and tools", list(kinds.values()))
+    return {
+        "robots": arms,
+        "bodies": [
+            {"name": b.name, "node": node} for b, node in zip(bodies(cell), shown, strict=True)
+        ],
+        "kinds": kinds,
         "tools": {
             kind.name: frame(kind.tool.T_flange_tcp)
             for kind in cell.kinds
@@ -52,8 +67,34 @@ def describe(cell: RobotCell) -> Json:
         },
         "zones": [_zone(z) for z in cell.zones.values()],
         "warningClearance": cell.scene.warning_clearance,
+        "glb": packed_bytes(gltf.glb()),
+        "notes": store.simplified,
     }
-    return {**found, "meshes": store.rows, "notes": store.simplified}
+
+
+def _standing(robot: Json, gltf: Gltf) -> int:
+    """The node of a robot at HOME: its links hang on each other, and have their shapes beside those that they carry."""
+    home, links = robot["home"], robot["links"]
+    carried: dict[int, list[int]] = {}
+    for joint in reversed(robot["joints"]):  # each is before those that it carries
+        child = joint["child"]
+        at = np.array(joint["frame"]).reshape(4, 4)
+        if joint["moves"] >= 0:
+            at = at @ _moved(joint, home[joint["moves"]])
+        own = [links[child]["node"], *carried.get(child, [])]
+        node = gltf.node(f"{robot['name']}/{links[child]['name']} at its joint", own, at)
+        carried.setdefault(joint["parent"], []).append(node)
+    return gltf.node(robot["name"], [links[0]["node"], *carried.get(0, [])], robot["base"])
+
+
+def _moved(joint: Json, by: float) -> Array:
+    """What a joint does to what it carries."""
+    out = np.eye(4)
+    if joint.get("slides"):
+        out[:3, 3] = np.array(joint["axis"]) * by
+    else:
+        out[:3, :3] = rotation_about(joint["axis"], by)
+    return out
 
 
 def _zone(zone: Zone) -> Json:
@@ -145,7 +186,12 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
         "base": frame(robot.T_world_base),
         "home": [float(v) for v in robot.home],
         "links": [
-            {"name": prefix + name, "visuals": _visuals(tree, name, store)}
+            {
+                "name": prefix + name,
+                "node": store.gltf.node(
+                    f"{robot.name}/{prefix}{name}", _visuals(tree, name, store)
+                ),
+            }
             for prefix, tree in trees
             for name in (tree.root, *_children(tree))
         ],
@@ -173,8 +219,8 @@ def _children(tree: Urdf) -> list[str]:
     return [j.child for j in _from_root(tree)]
 
 
-def _visuals(tree: Urdf, link: str, store: Meshes) -> list[list[Any]]:
-    """What is seen of a link: [mesh, frame in the link, colour, scale]."""
+def _visuals(tree: Urdf, link: str, store: Meshes, root: Array | None = None) -> list[int]:
+    """The nodes of what is seen of a link, in its frame, or in one in which the link is at `root`."""
     colours = {
         m.get("name"): _colour(m.find("color"))
         for m in tree.xml.findall("material")
@@ -185,25 +231,26 @@ def _visuals(tree: Urdf, link: str, store: Meshes) -> list[list[Any]]:
         if element.get("name") != link:
             continue
         for visual in element.findall("visual"):
-            mesh, scale = _shape(visual.find("geometry"), tree.path.parent, store)
-            if mesh < 0:
+            geometry, scale = _shape(visual.find("geometry"), tree.path.parent, store)
+            if geometry < 0:
                 continue
             material = visual.find("material")
             own = _colour(material.find("color")) if material is not None else None
             named = colours.get(material.get("name")) if material is not None else None
-            out.append([mesh, _origin(visual.find("origin")), list(own or named or _GREY), scale])
+            at = _origin(visual.find("origin"))
+            placed = at if root is None else root @ at
+            out.append(store.gltf.shape(geometry, frame(placed), own or named or _GREY, scale))
     return out
 
 
-def _seen_of(tree: Urdf, store: Meshes) -> list[list[Any]]:
+def _seen_of(tree: Urdf, store: Meshes) -> list[int]:
     """The same of all links of a tree, in the frame of its root."""
     out = []
     for link in tree.links:
         placed = np.eye(4)
         for joint in tree.chain(link):
             placed = placed @ joint.T_parent_joint
-        for mesh, own, colour, scale in _visuals(tree, link, store):
-            out.append([mesh, frame(placed @ np.array(own).reshape(4, 4)), colour, scale])
+        out += _visuals(tree, link, store, placed)
     return out
 
 
@@ -231,12 +278,12 @@ def _shape(geometry: Any, folder: Path, store: Meshes) -> tuple[int, list[float]
     return -1, ones
 
 
-def _origin(element: Any) -> list[float]:
+def _origin(element: Any) -> Array:
     out = np.eye(4)
     if element is not None:
         out[:3, 3] = _numbers(element.get("xyz", "0 0 0"), 3) or [0.0, 0.0, 0.0]
         out[:3, :3] = rotation_xyz(*(_numbers(element.get("rpy", "0 0 0"), 3) or (0.0, 0.0, 0.0)))
-    return frame(out)
+    return out
 
 
 def _colour(element: Any) -> tuple[float, ...] | None:
@@ -252,12 +299,13 @@ def _numbers(text: str, count: int) -> list[float]:
     return found if len(found) == count and bool(np.isfinite(found).all()) else []
 
 
-def _looks(looks: tuple[Look, ...], store: Meshes) -> list[list[Any]]:
+def _looks(looks: tuple[Look, ...], store: Meshes) -> list[int]:
     out = []
     for look in looks:
-        mesh = store.mesh(look.mesh) if look.mesh is not None else -1
+        geometry = store.mesh(look.mesh) if look.mesh is not None else -1
         if look.file is not None:
-            mesh = store.file(look.file)
-        if mesh >= 0:
-            out.append([mesh, frame(matrix_of(look.pose)), list(look.colour), [look.scale] * 3])
+            geometry = store.file(look.file)
+        if geometry >= 0:
+            scale = [look.scale] * 3
+            out.append(store.gltf.shape(geometry, frame(matrix_of(look.pose)), look.colour, scale))
     return out

@@ -19,7 +19,9 @@ from pn2code.base.os_reason import os_reason
 
 Json = dict[str, Any]
 
-VERSION = 1
+VERSION = 2
+_WITHOUT_ARMS = (1, VERSION)
+"""In version 1 arms have meshes of another form; all else is the same."""
 NAME = "run.json"
 LARGEST = 500_000_000
 """Bytes of a description."""
@@ -80,7 +82,8 @@ def problem_of(data: Any) -> str | None:
     if not isinstance(data, dict) or not isinstance(data.get("pn2code"), dict):
         return "is not the description of a run: its member `pn2code` is missing"
     version = data["pn2code"].get("run")
-    if version != VERSION:
+    known = (VERSION,) if data.get("cell") else _WITHOUT_ARMS
+    if type(version) is not int or version not in known:
         return f"is a description of version {version!r}, but version {VERSION} is expected: run the cell again"
     for name, kind in _NEEDED.items():
         if not isinstance(data.get(name), kind) or isinstance(data.get(name), bool):

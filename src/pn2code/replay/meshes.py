@@ -1,11 +1,10 @@
-"""Shapes of robots and scene as compact triangles.
+"""Shapes of robots and scene as triangles, each once.
 
-    store = Meshes()
-    store.file(Path("link_1.obj"))     # the number of a mesh in `store.described()`
+    store = Meshes(gltf)
+    store.file(Path("link_1.obj"))     # the number of a geometry in the glTF; -1: there is nothing to see
     store.box((0.1, 0.1, 0.05))
 
-A mesh is points and triangles. Points are whole numbers between the corners of the mesh's box (16 bits each, less than
-0.05 mm for an arm), triangles the numbers of their points; normals are computed where they are drawn.
+A shape is points and triangles; normals are computed where it is drawn.
 """
 
 from __future__ import annotations
@@ -16,20 +15,20 @@ from typing import Any
 
 import numpy as np
 
-from pn2code.replay.arrays import Numbers, packed
+from pn2code.replay.arrays import Numbers
+from pn2code.replay.gltf import Gltf
 from pn2code.robot.mesh_files import NoMesh, merged, read
 from pn2code.robot.models.shapes import Mesh, block, rod
 
-_STEPS = 65535
 MOST_TRIANGLES = 150_000
 """Of one mesh; what has more is shown as the box around it."""
 
 
 class Meshes:
-    """Meshes by number, each once."""
+    """Geometries of a glTF by number, each once."""
 
-    def __init__(self) -> None:
-        self.rows: list[dict[str, Any]] = []
+    def __init__(self, gltf: Gltf) -> None:
+        self.gltf = gltf
         self.simplified: list[str] = []
         """files that are shown as the boxes around them, with the reason"""
         self._known: dict[Any, int] = {}
@@ -82,18 +81,7 @@ class Meshes:
         return self._known[key]
 
     def _add(self, points: Numbers, triangles: Numbers) -> int:
-        low = points.min(axis=0) if len(points) else np.zeros(3)
-        size = points.max(axis=0) - low if len(points) else np.zeros(3)
-        whole = np.round((points - low) / np.where(size > 0, size, 1.0) * _STEPS)
-        self.rows.append(
-            {
-                "low": [round(float(v), 6) for v in low],
-                "size": [round(float(v), 6) for v in size],
-                "points": packed(whole.astype(np.int64).T.reshape(-1)),
-                "triangles": packed(triangles.reshape(-1)),
-            }
-        )
-        return len(self.rows) - 1
+        return self.gltf.geometry(points, triangles) if len(triangles) else -1
 
 
 def _of(mesh: Mesh) -> tuple[Numbers, Numbers]:

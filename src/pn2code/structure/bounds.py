@@ -238,11 +238,12 @@ class _Search:
         program = flows.Program(self._matrix, at_most=True)
         possible = program.support()
         costs = [float(n) for n in self._tokens]
-        for i in counted(self._left, "bounds of places"):
+        # How long it takes is told of those that cost something, and of no more than the budget permits.
+        tried = [i for i in self._left if i in possible][: max(budget + 1 - program.solved, 0)]
+        for i in counted(tried, "bounds of places"):
             if program.solved > budget:
                 return
-            if i in possible:
-                self._found(i, program.invariant(i, costs))
+            self._found(i, program.invariant(i, costs))
 
     def _found(self, row: int, vector: Mapping[int, int] | None) -> None:
         if vector is None:

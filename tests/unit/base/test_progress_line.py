@@ -145,6 +145,25 @@ def test_when_all_states_are_known_nothing_waits() -> None:
     assert last.startswith("arcs: 7 states  9 arcs  0 MiB  5 s")
 
 
+def test_a_second_exploration_is_told_from_the_first() -> None:
+    """Its count begins anew, which looked as if the first one went backwards."""
+    stream = Terminal()
+    with exploration.ProgressLine(stream=stream) as line:
+        line.update({"phase": "explore", "states": 900})
+        line.stage("exploring the cell as its programs run ...")
+        for states, phase in ((20, "explore"), (50, "explore"), (50, "graph"), (7, "explore")):
+            line.update({"phase": phase, "states": states})
+    said = [text.strip().split(" states")[0] for text in stream.getvalue().split("\x1b[K")[1:-1]]
+    assert said[1:] == [
+        "exploring: 900",
+        "exploring the cell as its programs run ...",
+        "exploring the cell as its programs run: 20",
+        "exploring the cell as its programs run: 50",
+        "exploring the cell as its programs run: arcs: 50",
+        "exploring the cell as its programs run (2): 7",
+    ]
+
+
 def test_an_exploration_with_a_limit_does_not() -> None:
     stream = io.StringIO()
     with exploration.ProgressLine(stream=stream) as line:

@@ -38,6 +38,17 @@ def test_properties(answer: str, expect: bool, code: int, found: str, tmp_path: 
     assert (c.answer, c.findings[0].answer) == (found, found)
 
 
+def test_checks_have_the_titles_of_the_screen(tmp_path: Path) -> None:
+    row = {"answer": "yes", "says": "", "value": 1}
+    said = {
+        **NET,
+        "controller": [{**row, "check": "finite-response"}],
+        "medium": [{**row, "check": "the cell with its medium"}],
+    }
+    about = [f.about for f in chapter(tmp_path, "verify", said).findings]
+    assert about == ["Finite response (finite-response)", "The cell with its medium"]
+
+
 @pytest.mark.parametrize(
     ("code", "found"), [(0, YES), (1, NO), (2, OPEN), (3, OPEN), (70, OPEN), (None, OPEN)]
 )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pn2code.replay import meshes
-from pn2code.replay.arrays import unpacked
+from pn2code.replay.gltf import Gltf
 from pn2code.replay.meshes import Meshes
 
 SQUARE = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
@@ -26,10 +26,7 @@ endsolid
 
 
 def points(store: Meshes, mesh: int) -> set[tuple[float, ...]]:
-    row = store.rows[mesh]
-    whole = unpacked(row["points"]).reshape(3, -1).T
-    found = np.array(row["low"]) + whole / 65535 * np.array(row["size"])
-    return {tuple(round(float(v), 4) for v in p) for p in found}
+    return {tuple(round(float(v), 4) for v in p) for p in store.gltf.points(mesh)}
 
 
 @pytest.mark.parametrize(
@@ -38,11 +35,11 @@ def points(store: Meshes, mesh: int) -> set[tuple[float, ...]]:
 def test_an_obj_file(faces: str, tmp_path: Path) -> None:
     file = tmp_path / "a.obj"
     file.write_text(SQUARE + "vn 0 0 1\n" + faces)
-    store = Meshes()
+    store = Meshes(Gltf())
     mesh = store.file(file)
     assert store.file(file) == mesh
     assert points(store, mesh) == {(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)}
-    assert unpacked(store.rows[mesh]["triangles"]).tolist() == [0, 1, 2, 0, 2, 3]
+    assert store.gltf.triangles(mesh).tolist() == [[0, 1, 2], [0, 2, 3]]
 
 
 def test_an_stl_file_of_either_kind(tmp_path: Path) -> None:
@@ -50,7 +47,7 @@ def test_an_stl_file_of_either_kind(tmp_path: Path) -> None:
     corners = (0, 0, 0, 2, 0, 0, 2, 1, 0)
     binary = bytes(80) + struct.pack("<I12fH", 1, 0, 0, 1, *corners, 0)
     (tmp_path / "binary.stl").write_bytes(binary)
-    store = Meshes()
+    store = Meshes(Gltf())
     found = [points(store, store.file(tmp_path / name)) for name in ("text.stl", "binary.stl")]
     assert found[0] == found[1] == {(0, 0, 0), (2, 0, 0), (2, 1, 0)}
 
@@ -68,9 +65,9 @@ def test_a_damaged_file_is_nothing_to_see_and_is_named(
     name: str, text: str, tmp_path: Path
 ) -> None:
     (tmp_path / name).write_text(text)
-    store = Meshes()
+    store = Meshes(Gltf())
     mesh = store.file(tmp_path / name)
-    assert store.rows[mesh]["triangles"]["length"] == 0
+    assert mesh == -1
     assert len(store.simplified) == 1 and name in store.simplified[0]
 
 
@@ -79,14 +76,14 @@ def test_a_mesh_that_is_too_large_becomes_a_box(
 ) -> None:
     monkeypatch.setattr(meshes, "MOST_TRIANGLES", 1)
     (tmp_path / "a.obj").write_text(SQUARE + "v 0 0 1\nf 1 2 3 4\nf 1 2 5\n")
-    store = Meshes()
+    store = Meshes(Gltf())
     mesh = store.file(tmp_path / "a.obj")
-    assert store.rows[mesh]["size"] == pytest.approx([2.0, 1.0, 1.0], abs=1e-4)
+    assert np.ptp(store.gltf.points(mesh), axis=0) == pytest.approx([2.0, 1.0, 1.0], abs=1e-4)
     assert "3 triangles" in store.simplified[0]
 
 
 def test_a_capsule_is_longer_than_it_says_by_its_round_ends() -> None:
-    store = Meshes()
+    store = Meshes(Gltf())
     found = np.array(sorted(points(store, store.capsule(0.1, 0.5))))
     assert found[:, 2].min() == pytest.approx(-0.35) and found[:, 2].max() == pytest.approx(0.35)
     across = np.hypot(found[:, 0], found[:, 1])

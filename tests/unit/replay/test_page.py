@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -87,13 +88,27 @@ def test_without_three_js_the_page_says_why(tmp_path: Path) -> None:
     assert embedded_in(page(described(tmp_path), library="not installed"))["missing"] == ""
 
 
-def test_three_js_is_the_one_that_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("name", ["LIBRARY", "READER"])
+def test_three_js_and_its_reader_are_those_that_are_known(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = three.find()
     assert isinstance(found, Three) and "SPDX-License-Identifier: MIT" in found.text
-    monkeypatch.setattr(three, "SHA256", "0" * 64)
-    assert "has another three.js" in str(three.find())
-    monkeypatch.setattr(three, "PACKAGE", "a_package_that_is_not_there")
-    assert "is not installed" in str(three.find())
+    assert "THREE.GLTFLoader=" in found.text
+    part = getattr(three, name)
+    monkeypatch.setattr(three, name, replace(part, sha256="0" * 64))
+    assert f"has another {part.what}" in str(three.find())
+    monkeypatch.setattr(three, name, replace(part, file="not_there.js"))
+    assert f"{part.what} is not in the package" in str(three.find())
+    monkeypatch.setattr(three, name, replace(part, package="a_package_that_is_not_there"))
+    assert f"{part.what} is not installed" in str(three.find())
+
+
+def test_a_reader_that_has_other_words_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    for change in ({"begins": "not there"}, {"ends": "not there"}, {"member": "not there"}):
+        monkeypatch.setattr(three, "READER", replace(three.READER, **change))
+        assert "GLTFLoader is not in the package trimesh" in str(three.find())
+        monkeypatch.undo()
 
 
 def test_a_description_reads_back(tmp_path: Path) -> None:
@@ -103,13 +118,21 @@ def test_a_description_reads_back(tmp_path: Path) -> None:
     assert page(read(tmp_path)) == page(shown)
 
 
+def test_one_of_version_1_without_arms_is_as_ever(tmp_path: Path) -> None:
+    shown = {**described(tmp_path), "pn2code": {"run": 1}}
+    (tmp_path / "run.json").write_text(text_of(shown), encoding="utf-8")
+    assert read(tmp_path) == shown
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [
         ("[1]", "`pn2code` is missing"),
         ("{", "is not JSON"),
-        ('{"pn2code": {"run": 99}}', "of version 99, but version 1 is expected"),
-        ('{"pn2code": {"run": 1}}', "its `kind` is missing"),
+        ('{"pn2code": {"run": 99}}', "of version 99, but version 2 is expected"),
+        ('{"pn2code": {"run": 1}, "cell": {"robots": []}}', "of version 1, but version 2"),
+        ('{"pn2code": {"run": true}}', "of version True, but version 2"),
+        ('{"pn2code": {"run": 2}}', "its `kind` is missing"),
     ],
 )
 def test_another_file_is_refused(text: str, why: str, tmp_path: Path) -> None:

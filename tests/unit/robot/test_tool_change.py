@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from helpers.tool_cell import TOML, placed
 from pn2code.arms import Arms
+from pn2code.replay.arrays import unpacked
 from pn2code.replay.cell import at_start, describe, put, tool_in_use
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import (
@@ -311,15 +314,22 @@ def test_a_tool_in_use_is_in_zones(tmp_path: Path) -> None:
     assert local.max(axis=0) == pytest.approx([0.05, 0.05, 0.28])
 
 
+def nodes_of(glb: bytes) -> list[dict[str, Any]]:
+    """The nodes of a glTF, whose matrices are by columns."""
+    found = json.loads(glb[20 : 20 + int.from_bytes(glb[12:16], "little")])
+    return list(found["nodes"])
+
+
 def test_what_the_replay_page_is_told(tmp_path: Path) -> None:
     """A tool is one kind of things, with the shapes of all links; one that is in use hangs at the coupling."""
     cell = read(tmp_path, TOML.replace("tools = [", 'begins_with = "driver"\ntools = ['))
     described = describe(cell)
     assert described["robots"][0]["changes"] is True
     assert np.array(described["tools"]["driver"]).reshape(4, 4)[2, 3] == pytest.approx(0.28)
-    body, bit = described["kinds"]["driver"]
-    assert np.array(body[1]).reshape(4, 4)[2, 3] == pytest.approx(0.08)
-    assert np.array(bit[1]).reshape(4, 4)[2, 3] == pytest.approx(0.16 + 0.06)
+    nodes = nodes_of(unpacked(described["glb"]).tobytes())
+    body, bit = (nodes[k] for k in nodes[described["kinds"]["driver"]]["children"])
+    assert body["matrix"][14] == pytest.approx(0.08)
+    assert bit["matrix"][14] == pytest.approx(0.16 + 0.06)
     start = at_start(cell)
     assert start["driver"]["holder"] == "arm" and start["gripper"]["holder"] == ""
     assert np.array(start["gripper"]["frame"]).reshape(4, 4) == pytest.approx(LEFT)

@@ -16,6 +16,8 @@ _PHASES = {
 }
 
 
+_FIRST = "compiling and exploring the net ..."
+
 ENDLESS_S = 60.0
 """Of an exploration without a limit: after them it is said that there is none."""
 _ENDLESS = (
@@ -41,21 +43,37 @@ class ProgressLine(Line):
         is_limited: bool = True,
         is_timed: bool = False,
     ) -> None:
-        super().__init__(
-            shown=shown, stream=stream, first="compiling and exploring the net ...", plain=True
-        )
+        super().__init__(shown=shown, stream=stream, first=_FIRST, plain=True)
         self._advice = "" if is_limited else _ENDLESS + (_TIMED if is_timed else "")
+        self._begin("")
+
+    def _begin(self, what: str) -> None:
+        self._what, self._exploration, self._states = what, 1, 0
+
+    def stage(self, text: str) -> None:
+        """Several things are explored one after the other: what is counted from now on is of another one."""
+        self._begin("" if text == _FIRST else text.removesuffix(" ..."))
+        super().stage(text)
 
     def update(self, said: Mapping[str, Any]) -> None:
         """What the explorer says of itself, twice a second."""
-        phase = _PHASES.get(said.get("phase", ""), str(said.get("phase", "")))
+        own = said.get("phase", "explore")
+        phase = _PHASES.get(own, str(own))
+        if self._what:
+            phase = self._what if own == "explore" else f"{self._what}: {phase}"
+        states = said.get("states", 0)
+        if own == "explore" and states < self._states:  # another way to look at the same
+            self._exploration += 1
+        self._states = states
+        if self._exploration > 1:
+            phase += f" ({self._exploration})"
         going_on = [
             f"{said.get('rate', 0):,.0f} states/s",
             f"{said.get('frontier', 0):,} waiting",
             f"depth {said.get('depth', 0):,}",
         ]
         parts = [
-            f"{said.get('states', 0):,} states",
+            f"{states:,} states",
             f"{said.get('arcs', 0):,} arcs",
             # All states are known in what comes after.
             *(going_on if said.get("phase", "explore") == "explore" else ()),
