@@ -38,6 +38,7 @@ from pn2code.robot.geometry import Body, Solid, bodies, body_of, zone_body
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
+from pn2code.robot.placed_links import tool_links
 from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, RobotCell
 from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, pose_of, translation
@@ -721,7 +722,8 @@ class BulletBackend:
             return
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         tables = {a.index[t] for t in a.robot.arm.tables}
-        own = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
+        of_tool = tool_links(a.robot)
+        own = {i for i, link in a.links.items() if link in of_tool or i >= last} - tables
         for side in self._sides(a):
             for i in a.links if not side.links and not side.rides else ():
                 other = a.names[i]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from pn2code.robot.placed_links import placed_links
+from pn2code.robot.placed_links import placed_links, tool_links
 from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, ContactRule
 from pn2code.robot.tools_table import ToolKind
 
@@ -17,7 +17,7 @@ from pn2code.robot.tools_table import ToolKind
 def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iterator[ContactRule]:
     """What couplings touch lying tools with, tools what holds them there, and contact links what they grip."""
     for robot in robots:
-        ends = [f"{robot.name}/{link}" for link in _end(robot)] if robot.tools else ()
+        ends = [f"{robot.name}/{link}" for link in end_links(robot)] if robot.tools else ()
         for name, kind in robot.tools.items():
             for end in ends:
                 yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
@@ -27,11 +27,11 @@ def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iter
                 yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
 
 
-def _end(robot: CellRobot) -> Iterator[str]:
+def end_links(robot: CellRobot) -> Iterator[str]:
     """The links behind the last axis of the arm."""
-    last = robot.kinematics.joints.stop
+    last, of_tool = robot.kinematics.joints.stop, tool_links(robot)
     for link, joint, _ in placed_links(robot):
-        if joint == last or link.startswith("tool_"):
+        if joint == last or link in of_tool:
             yield link
 
 
