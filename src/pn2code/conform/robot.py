@@ -25,9 +25,12 @@ from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles, Script
 from pn2code.conform.scheme import MOST_STATES, Scheme
+from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
+from pn2code.robot_scripts.machine import analyse
+from pn2code.robot_scripts.translate import awaited_first
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import (
     BindingElement,
@@ -132,6 +135,16 @@ class _State:
     chosen: Chosen = Chosen()
 
 
+def _awaited(partition: Partition, owner: int) -> Iterator[tuple[int, frozenset[str]]]:
+    """By control place: the messages that its script waits for before it asks anything else."""
+    machine = analyse(partition, partition.owners[owner], Diagnostics())
+    names = {c.place: c.name for c in partition.channels}
+    for place in machine.control if machine is not None else ():
+        found = awaited_first(partition, machine, place)
+        if found:
+            yield place, frozenset(names[p] for p in found)
+
+
 class _Product:
     def __init__(
         self,
@@ -157,6 +170,7 @@ class _Product:
         self._late: frozenset[str] = frozenset()
         data = {c.name for c in partition.channels if c.kind is ChannelKind.DATA}
         self._files = PlacesAsFiles(frozenset(data & self._channels.keys()))
+        self._awaited = dict(_awaited(partition, owner))
         self._listener = Listener(game, config.primitives)
         self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
@@ -288,7 +302,9 @@ class _Product:
             case Fault(message=message, line=line):
                 self._chosen = state.chosen
                 if not any(map(self._must_stop, self._looked_at(state.marking))):
-                    self._nothing_to_do(state, f"the script stops in line {line} ({message})")
+                    why = f"the script stops in line {line} ({message})"
+                    self._nothing_to_do(state, why)
+                    self._nothing_to_wait_for(state, why)
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
                 if any(name in view for name in names):
@@ -344,6 +360,14 @@ class _Product:
             raise DeviationError(
                 f"{why}, but has commanded {_list(state.done)}, which the net does not call"
             )
+
+    def _nothing_to_wait_for(self, state: _State, why: str) -> None:
+        """A script that stops where it is to wait stops the cell, even if the message never comes."""
+        view = self._view(state.marking)
+        for place, names in self._awaited.items():
+            if state.marking.places[place] and not names <= view.keys():
+                awaited = ", ".join(sorted(names))
+                raise DeviationError(f"{why}, where its page waits for {awaited}")
 
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
