@@ -10,6 +10,7 @@ beside boxes, cylinders and meshes; nothing here knows what the cell is for.
 from __future__ import annotations
 
 import fnmatch
+import glob
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -462,7 +463,7 @@ def _gripping(
         "floor",
         "panel/*",
         *belts,
-        *(o.name for o in objects),
+        *(glob.escape(o.name) for o in objects),
         *(f"{kind}.*" for kind in kinds),
         *(f"{r.name}/{table}" for r in robots for table in r.arm.tables),
     ]

@@ -6,6 +6,7 @@ compared, it has further names behind that one (`gripper.tool_held_by_arm`).
 
 from __future__ import annotations
 
+import glob
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -23,7 +24,7 @@ def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iter
                 yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
             held = f"{robot.name}/{name}"
             gripped = [f"{k}.*" for k in kind.takes] if kind.tool.contact_links else []
-            for other in (*kind.holders, *gripped):
+            for other in (*map(glob.escape, kind.holders), *gripped):
                 yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
 
 
