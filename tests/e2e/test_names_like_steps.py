@@ -109,6 +109,28 @@ def test_a_page_is_called_as_the_steps_of_a_cell(tmp_path: Path) -> None:
     assert cycle["most_s"] is None and "cell.dev.Work" in cycle["repeats"]
 
 
+def test_endings_have_runs_of_their_own(tmp_path: Path) -> None:
+    """Two final places with the same last word, and with signs that a file cannot have in its name."""
+    pages = _PAGES.replace("TOP", "Top").replace("AGAIN", 'out "b.D/ne"')
+    pages = pages.replace("place over", 'place "a.D/ne"\n  place "b.D/ne"')
+    text = pages.replace("    out over", '    out "a.D/ne"')
+    (tmp_path / "cell.cpnt").write_text(text, encoding="utf-8")
+    config = _TOML.replace("DEVICE", "dev").replace('["over"]', '["a.D/ne", "b.D/ne"]')
+    (tmp_path / "cell.toml").write_text(config, encoding="utf-8")
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, ["time", str(tmp_path), "--json", "-o", str(out)])
+    endings = json.loads(done.stdout)["layouts"][0]["cycle"]["endings"]
+    last = {}
+    for e in endings:
+        rows = map(json.loads, Path(e["fastest"]).read_text(encoding="utf-8").splitlines())
+        (place,) = e["final"]
+        last[place] = [row["transition"] for row in rows if "transition" in row][-1]
+    assert last == {
+        "Top.supervisor.a.D/ne": "Top.supervisor.End",
+        "Top.supervisor.b.D/ne": "Top.supervisor.Again",
+    }
+
+
 _TOLD = """standard
 var n : INT;
 page Top

@@ -6,6 +6,7 @@ found.layouts[0].cycle.most
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -240,10 +241,15 @@ class _Look:
             search.why == "situations" and not (self.doings.why or self.doings.stops)
         )
         several = len(search.endings) > 1
+        taken = {""}
         for places, ending in search.endings.items():
             best = ending.best if is_first else None
             worst = ending.worst if is_known else None
-            short = "-" + places.replace(", ", "+").split(".")[-1] if several else ""
+            word = re.sub(r"[^\w+-]+", "_", places.replace(", ", "+").split(".")[-1])
+            numbered = (f"{word}{k}" for k in itertools.count(2))
+            own = word if word not in taken else next(x for x in numbered if x not in taken)
+            taken.add(own)
+            short = f"-{own}" if several else ""
             yield Ending(
                 places,
                 None if best is None else best.ns,
