@@ -139,7 +139,9 @@ def _awaited(partition: Partition, owner: int) -> Iterator[tuple[int, frozenset[
     """By control place: the messages that its script waits for before it asks anything else."""
     machine = analyse(partition, partition.owners[owner], Diagnostics())
     names = {c.place: c.name for c in partition.channels}
-    for place in machine.control if machine is not None else ():
+    if machine is None:
+        return
+    for place in machine.control:
         found = awaited_first(partition, machine, place)
         if found:
             yield place, frozenset(names[p] for p in found)
