@@ -111,3 +111,38 @@ NOT_A, NOT_B = m.Op("not", (A,)), m.Op("not", (B,))
 def test_which_answers_are_kept(asked: m.Formula, answers: str) -> None:
     kept = [x for x in ("yes", "no") if means_the_same(m.Linear(asked), x)]
     assert " ".join(kept) == answers
+
+
+LINEAR = {f"{path}{x}": x for path in "AE" for x in "XFGUWR"}
+
+
+def branching(r: Random, depth: int) -> m.Formula:
+    if depth == 0 or r.random() < 0.2:
+        return r.choice((P, Q, m.DEAD, m.TRUE))
+    operator = r.choice(("not", "and", "or", "implies", "iff", *LINEAR))
+    is_single = operator == "not" or operator[1:] in ("X", "F", "G")
+    step = r.choice((0, 1)) if operator in ("AX", "EX") else -1
+    parts = tuple(branching(r, depth - 1) for _ in range(1 if is_single else 2))
+    return m.Op(operator, parts, step)
+
+
+def on_a_path(f: m.Formula) -> m.Formula:
+    """What a formula means where there is but one path."""
+    if isinstance(f, m.Atom):
+        return f
+    own = m.Op(LINEAR.get(f.operator, f.operator), tuple(map(on_a_path, f.parts)))
+    how = {"EX": "and", "AX": "implies"}.get(f.operator)
+    return own if how is None else m.Op(how, (m.Atom("fires", f.step), own))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_branching_time_where_there_is_one_path(seed: int) -> None:
+    r = Random(seed)
+    for _ in range(400):
+        asked = branching(r, r.choice((1, 2, 3)))
+        if not means_the_same(m.Branching(asked)):
+            continue
+        for _ in range(20):
+            own, more = paths(r)
+            found = holds(on_a_path(asked), own), holds(on_a_path(asked), more)
+            assert found[0] == found[1], (asked, own, more)
