@@ -25,12 +25,9 @@ from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles, Script
 from pn2code.conform.scheme import MOST_STATES, Scheme
-from pn2code.diagnostics import Diagnostics
-from pn2code.net.flat import BindAll, BindRandom, FlatTransition
+from pn2code.net.flat import ArcKind, BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
-from pn2code.robot_scripts.machine import analyse
-from pn2code.robot_scripts.translate import awaited_first
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import (
     BindingElement,
@@ -135,18 +132,6 @@ class _State:
     chosen: Chosen = Chosen()
 
 
-def _awaited(partition: Partition, owner: int) -> Iterator[tuple[int, frozenset[str]]]:
-    """By control place: the messages that its script waits for before it asks anything else."""
-    machine = analyse(partition, partition.owners[owner], Diagnostics())
-    names = {c.place: c.name for c in partition.channels}
-    if machine is None:
-        return
-    for place in machine.control:
-        found = awaited_first(partition, machine, place)
-        if found:
-            yield place, frozenset(names[p] for p in found)
-
-
 class _Product:
     def __init__(
         self,
@@ -172,7 +157,6 @@ class _Product:
         self._late: frozenset[str] = frozenset()
         data = {c.name for c in partition.channels if c.kind is ChannelKind.DATA}
         self._files = PlacesAsFiles(frozenset(data & self._channels.keys()))
-        self._awaited = dict(_awaited(partition, owner))
         self._listener = Listener(game, config.primitives)
         self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
@@ -364,12 +348,20 @@ class _Product:
             )
 
     def _nothing_to_wait_for(self, state: _State, why: str) -> None:
-        """A script that stops where it is to wait stops the cell, even if the message never comes."""
-        view = self._view(state.marking)
-        for place, names in self._awaited.items():
-            if state.marking.places[place] and not names <= view.keys():
-                awaited = ", ".join(sorted(names))
-                raise DeviationError(f"{why}, where its page waits for {awaited}")
+        """A script that stops where it is to wait stops the cell, even if the message never comes.
+
+        It waits where whatever could come next takes the same messages, and not all of them are there.
+        """
+        names = {c.place: c.name for c in self._incoming}
+        marked = [bool(tokens) for tokens in state.marking.places]
+        taken = set()
+        for t, owner in zip(self._net.transitions, self._partition.transition_owner, strict=True):
+            places = [a.place for a in t.arcs if a.kind in (ArcKind.INPUT, ArcKind.BOTH)]
+            if owner == self._owner and all(marked[p] or p in names for p in places):
+                taken.add(frozenset(names[p] for p in places if p in names))
+        missing = frozenset().union(*taken) - self._view(state.marking).keys()
+        if len(taken) == 1 and missing:
+            raise DeviationError(f"{why}, where its page waits for {', '.join(sorted(missing))}")
 
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
