@@ -119,8 +119,7 @@ class Composer(LifeCycle):
                 self._robot(o)
             for o in range(len(self.sides)):
                 self._crashing(o)  # last: all places of its memory are there now
-        if not loose:
-            self._rest()
+        self.ends = frozenset[str]() if loose else frozenset(self._rest())
 
     def _fresh(self) -> dict[int, int]:
         """Where scripts begin to look that wait for one of several messages: by owner, a place.
@@ -522,17 +521,21 @@ class Composer(LifeCycle):
 
     # --- the ends that are wanted, and the others ------------------------------------------------
 
-    def _rest(self) -> None:
+    def _rest(self) -> Iterator[str]:
+        """The names of the steps that are possible at an end that is wanted."""
         b = self.b
         if not self.crashes.life_cycle:
             for i, place in enumerate(self.partition.final_places):
                 says = "the supervisor has finished"
-                self.step(f"rest {i + 1}", says, self.has(self.sides[0].calm), self.any(place))
+                yield self.step(
+                    f"rest {i + 1}", says, self.has(self.sides[0].calm), self.any(place)
+                )
             return
         robots = [self.has(side.off) for side in self.sides[1:]]
         last = b.test(self.sides[0].session, b.number(self.crashes.all_sessions))
-        self.step("rest after the end", "all have finished", self.has(self.done), *robots)
-        self.step("rest after a stop", "all have ended", self.has(self.sides[0].off), last, *robots)
+        yield self.step("rest after the end", "all have finished", self.has(self.done), *robots)
+        off = self.has(self.sides[0].off)
+        yield self.step("rest after a stop", "all have ended", off, last, *robots)
 
     def finish(self) -> ChannelModel:
         """The net."""
@@ -545,7 +548,7 @@ class Composer(LifeCycle):
             partition=self.partition,
             verdict=self.verdict,
             ending=len(net.transitions) - 1,
-            ends=tuple(t.index for t in net.transitions if t.name.startswith("medium.rest")),
+            ends=tuple(t.index for t in net.transitions if t.name in self.ends),
             says=self.says,
             files=tuple(self.files),
             sides=tuple(self.sides),

@@ -154,8 +154,8 @@ class Parts:
 
     def step(
         self, name: str, says: str, *arcs: Arc, at: int | None = None, guard: Exp | None = None
-    ) -> None:
-        """A transition of the channel model, by default a step that others may see."""
+    ) -> str:
+        """A transition of the channel model, by default a step that others may see; its name."""
         made = self.b.transition(
             f"medium.{name}",
             arcs,
@@ -163,6 +163,7 @@ class Parts:
             guards=() if guard is None else (guard,),
         )
         self.says[made] = says
+        return made
 
     def on(self, place: int) -> Arc:
         """Puts a dot."""

@@ -24,6 +24,7 @@ from pn2code.cli.options import (
     print_but_known,
     stop,
 )
+from pn2code.conform.folder import intruding
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError, expect_writable, write
 
@@ -47,7 +48,10 @@ def generate(
     ] = None,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Write nothing, and exit with code 1 if a file would change."),
+        typer.Option(
+            "--check",
+            help="Write nothing, and exit with code 1 if a file would change, or one is there that `make` would take.",
+        ),
     ] = False,
     unchecked: UncheckedOption = False,
     inputs: InputOption = None,
@@ -87,9 +91,15 @@ def generate(
     total = len(result.files)
     word = "would change" if check else "changed"
     typer.echo(f"{folder}: {total} files, {changed} {word}, digest {result.digest[:8]}")
-    if check and changed:
+    strange = intruding(folder, result.files)
+    if check:
         for path in (*written.changed, *written.removed):
             typer.echo(f"  {path}")
+    for path in strange:
+        typer.echo(
+            f"  {path} is not generated, and `make` would take it for a part of the programs"
+        )
+    if check and (changed or strange):
         raise typer.Exit(Exit.MODEL)
 
 

@@ -92,6 +92,11 @@ def compare(
     return found, tuple(programs)
 
 
+def intruding(folder: Path, fresh: Sequence[OutputFile]) -> tuple[str, ...]:
+    """Foreign files of a folder, if it is there, that would become a part of the programs."""
+    return _others(folder, frozenset(f.path for f in fresh))[0] if folder.is_dir() else ()
+
+
 def _others(folder: Path, own: frozenset[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Foreign files: those that would become a part of the programs, and the others."""
     intruding: list[str] = []

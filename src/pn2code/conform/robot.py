@@ -25,7 +25,7 @@ from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles, Script
 from pn2code.conform.scheme import MOST_STATES, Scheme
-from pn2code.net.flat import BindAll, BindRandom, FlatTransition
+from pn2code.net.flat import ArcKind, BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
 from pn2code.semantics.game.enabling import GivenUpError
@@ -288,7 +288,9 @@ class _Product:
             case Fault(message=message, line=line):
                 self._chosen = state.chosen
                 if not any(map(self._must_stop, self._looked_at(state.marking))):
-                    self._nothing_to_do(state, f"the script stops in line {line} ({message})")
+                    why = f"the script stops in line {line} ({message})"
+                    self._nothing_to_do(state, why)
+                    self._nothing_to_wait_for(state, why)
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
                 if any(name in view for name in names):
@@ -344,6 +346,22 @@ class _Product:
             raise DeviationError(
                 f"{why}, but has commanded {_list(state.done)}, which the net does not call"
             )
+
+    def _nothing_to_wait_for(self, state: _State, why: str) -> None:
+        """A script that stops where it is to wait stops the cell, even if the message never comes.
+
+        It waits where whatever could come next takes the same messages, and not all of them are there.
+        """
+        names = {c.place: c.name for c in self._incoming}
+        marked = [bool(tokens) for tokens in state.marking.places]
+        taken = set()
+        for t, owner in zip(self._net.transitions, self._partition.transition_owner, strict=True):
+            places = [a.place for a in t.arcs if a.kind in (ArcKind.INPUT, ArcKind.BOTH)]
+            if owner == self._owner and all(marked[p] or p in names for p in places):
+                taken.add(frozenset(names[p] for p in places if p in names))
+        missing = frozenset().union(*taken) - self._view(state.marking).keys()
+        if len(taken) == 1 and missing:
+            raise DeviationError(f"{why}, where its page waits for {', '.join(sorted(missing))}")
 
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""

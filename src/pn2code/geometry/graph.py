@@ -326,7 +326,7 @@ def _read(
         t.index
         for t in running.net.transitions[count:]
         if any(a.place in ends and a.kind is ArcKind.OUTPUT for a in t.arcs)
-        or t.name.startswith("cell.ends the robots")
+        or t.index == running.ending
     }
     known: dict[tuple[int, str], int] = {}
     elements: list[Element] = []

@@ -34,10 +34,6 @@ from pn2code.net.flat import (
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables
 
-REGISTER = "register-"
-"""What the ids of elements begin with that are added for registers."""
-LOOK = f"{REGISTER}look-"
-"""The same of transitions that look whether there is a new value, before anything else is done."""
 PAGE = "Medium"
 """The page that the new places and transitions are on."""
 
@@ -67,6 +63,8 @@ class Builder:
         self._base = base
         self.places: list[FlatPlace] = list(base.places)
         self.old: list[FlatTransition] = list(base.transitions)
+        self._place_names = {p.name for p in base.places}
+        self._names = {t.name for t in base.transitions}
         self._wanted: dict[str, _Wanted] = {}
         self._origin = Origin(base.file, page=PAGE)
         self._colsets = dict(base.program.colsets)
@@ -152,8 +150,10 @@ class Builder:
     # --- places and transitions ------------------------------------------------------------------
 
     def place(self, name: str, colset: Colset, initial: Exp | None = None) -> int:
-        """A new place, with one token or none; its index."""
+        """A new place, with one token or none; its index. Its name is made unique."""
         index = len(self.places)
+        name = _unused(name, self._place_names, "{} ({})")
+        self._place_names.add(name)
         self.places.append(
             FlatPlace(
                 index=index,
@@ -209,7 +209,8 @@ class Builder:
         self, name: str, arcs: Sequence[Arc], *, priority: int, guards: Sequence[Exp] = ()
     ) -> str:
         """A new transition; its name, which is made unique."""
-        shown = _unused(name, self._wanted, "{} ({})")
+        shown = _unused(name, self._names, "{} ({})")
+        self._names.add(shown)
         self._wanted[shown] = _Wanted(shown, tuple(arcs), tuple(guards), priority)
         return shown
 
@@ -297,11 +298,6 @@ class Builder:
                 )
             inscription = ArcInscription(arc.value, arc.form, found or (), origin)
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
-
-
-def looks(t: FlatTransition) -> bool:
-    """Whether a transition looks at a register, see `LOOK`."""
-    return t.id.startswith(LOOK)
 
 
 def _unused(name: str, taken: Container[str], form: str = "{}{}") -> str:

@@ -217,6 +217,17 @@ class FlatFusion:
     place: int
 
 
+class Role(Enum):
+    """What a transition of a cell is there for."""
+
+    OWN = "own"
+    """it is one of the file"""
+    REGISTER = "register"
+    """it was added for a register (`registers`)"""
+    LOOK = "look"
+    """the same, and it looks whether there is a new value, before anything else is done"""
+
+
 @frozen
 class FlatTransition:
     """A transition instance.
@@ -250,6 +261,7 @@ class FlatTransition:
     origin: Origin
     caption: str = ""
     """the name exactly as it is written, with line breaks; "" if it has none"""
+    role: Role = Role.OWN
 
 
 @frozen

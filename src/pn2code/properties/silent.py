@@ -7,6 +7,13 @@ what is said of the step that comes *next* (`fires`, `X`) may not. A formula is 
     LESS   if it is true before it, it is true after it (`fires(T)`, `dead`: not true before a silent step)
     MORE   if it is true after it, it is true before it (`!fires(T)`)
     OTHER  nothing is known
+
+`p U fires(T)` is none of these: where T is the next step of the net it is true whether p is or not, but before a silent
+step p has to be true. With `!fires(S)` for p, which always is before a silent step, it is SAME.
+
+Of formulas of linear time more is known, as a path with silent steps can be held against the one without them
+(`_is_kept`). The markings before an occurrence, and after the one before it, are a *block*; the last of them stands for
+all in the path without silent steps.
 """
 
 from __future__ import annotations
@@ -32,8 +39,8 @@ _ALWAYS = frozenset({"G", "AG", "EG"})
 _FINALLY = frozenset({"F", "AF", "EF"})
 
 
-def means_the_same(asked: m.Asked) -> bool:
-    """Whether the answer for the programs is the answer for their occurrences."""
+def means_the_same(asked: m.Asked, answer: str = "") -> bool:
+    """Whether the answer for the programs ("": whichever it is) is the answer for their occurrences."""
     match asked:
         case m.Bound():
             return True
@@ -42,7 +49,8 @@ def means_the_same(asked: m.Asked) -> bool:
         case m.Branching(formula):
             return sort(formula) is Sort.SAME
         case m.Linear(formula):
-            return sort(formula) is Sort.SAME
+            signs = {"yes": (True,), "no": (False,)}.get(answer, (True, False))
+            return all(_is_kept(formula, sign, last=False) for sign in signs)
         case m.Response(first, second):
             events = (first, second)
             return all(m.looks_at_steps(e) or sort(e) is Sort.SAME for e in events)
@@ -135,4 +143,61 @@ def _temporal(f: m.Op, positive: bool) -> Sort:
         a, b = (sort(x, positive) for x in f.parts)
         is_until = (operator in _UNTIL) is positive  # the negation of one is a release
         fits = (a in lasts and b in comes) if is_until else (a in comes and b in lasts)
+        fits = fits and (b is Sort.SAME or _holds_before(f.parts[0], positive is is_until))
     return Sort.SAME if fits else Sort.OTHER
+
+
+def _is_kept(f: m.Formula, positive: bool, *, last: bool) -> bool:
+    """Whether a formula (or, not `positive`, its negation) that is true with silent steps is true without them.
+
+    Args:
+        f: of linear time.
+        positive: not its negation.
+        last: where it is true in the last marking of a block; else wherever in the block it is.
+    """
+    if isinstance(f, m.Atom):
+        if f.kind in ("fires", "fires so", "dead"):
+            return positive or last
+        return f.kind in ("true", "pred")
+    match f.operator:
+        case "not":
+            return _is_kept(f.parts[0], not positive, last=last)
+        case "iff":
+            each = [(x, sign) for x in f.parts for sign in (True, False)]
+            return all(_is_kept(x, sign, last=last) for x, sign in each)
+        case "and" | "or" | "implies":
+            is_or = (f.operator != "and") is positive
+            return _are_kept(_flat(f, positive, is_or), is_or=is_or, last=last)
+        case "X":
+            return last and _is_kept(f.parts[0], positive, last=False)
+        case "F" | "G":
+            is_always = (f.operator == "G") is positive
+            return _is_kept(f.parts[0], positive, last=is_always)
+        case "U" | "W" | "R":
+            a, b = ((x, positive) for x in f.parts)
+            if (f.operator != "R") is positive:  # a until b
+                return _is_kept(*a, last=True) and _is_kept(*b, last=False)
+            # b until both are
+            both = [x for part in (a, b) for x in _flat(*part, False)]
+            return _is_kept(*b, last=True) and _are_kept(both, is_or=False, last=False)
+        case _:
+            return False
+
+
+def _are_kept(parts: list[tuple[m.Formula, bool]], *, is_or: bool, last: bool) -> bool:
+    """The same of a disjunction or conjunction. What T is next in is the last marking of its block."""
+    is_last = last or (not is_or and _has_step(parts, True))
+    return all(_is_kept(x, sign, last=is_last) for x, sign in parts)
+
+
+def _holds_before(f: m.Formula, positive: bool) -> bool:
+    """Whether a formula (or, not `positive`, its negation) is true before each silent step."""
+    if isinstance(f, m.Atom):
+        return f.kind == "true" if positive else f.kind in ("fires", "fires so", "dead")
+    if f.operator == "not":
+        return _holds_before(f.parts[0], not positive)
+    if f.operator in ("and", "or", "implies"):
+        is_or = (f.operator != "and") is positive
+        each = (_holds_before(x, sign) for x, sign in _flat(f, positive, is_or))
+        return any(each) if is_or else all(each)
+    return False

@@ -32,10 +32,13 @@ from pn2code.cell.partition import SUPERVISOR, ChannelKind, Owner, Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.net.builder import LOOK, REGISTER, Arc, Builder
-from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition
+from pn2code.net.builder import Arc, Builder
+from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition, Role
 from pn2code.registers.recognised import Register, refuse, registers
 from pn2code.robot_scripts.machine import analyse
+
+_ID = "register-"
+"""What the ids of elements begin with that are added."""
 
 
 @frozen
@@ -299,8 +302,9 @@ class _Composer:
                     page=made.page,
                     instance=made.instance,
                     instance_number=made.number,
-                    id=f"{LOOK if made.is_look else REGISTER}{t.index}",
+                    id=f"{_ID}{'look-' if made.is_look else ''}{t.index}",
                     origin=made.origin,
+                    role=Role.LOOK if made.is_look else Role.REGISTER,
                 )
                 for t, made in zip(net.transitions[count:], self.transitions, strict=True)
             ),
@@ -312,7 +316,7 @@ class _Composer:
                 page=self.places[p.index].page,
                 instance=self.places[p.index].instance,
                 instance_number=self.places[p.index].number,
-                id=f"{REGISTER}{p.index}p",
+                id=f"{_ID}{p.index}p",
                 origins=(self.places[p.index].origin,),
             )
             if p.index in self.places

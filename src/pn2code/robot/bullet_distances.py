@@ -11,6 +11,7 @@ from pn2code.base.frozen import frozen, record
 from pn2code.robot.backend import Beside, Clearance, ClearanceKind
 from pn2code.robot.bullet_world import BulletWorld, LoadedBody, LoadedRobot
 from pn2code.robot.parts import Part
+from pn2code.robot.placed_links import tool_links
 from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
 
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
@@ -375,7 +376,8 @@ class BulletDistances:
             return
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         tables = {a.index[t] for t in a.robot.arm.tables}
-        own = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
+        of_tool = tool_links(a.robot)
+        own = {i for i, link in a.links.items() if link in of_tool or i >= last} - tables
         for side in self._sides(a):
             for i in a.links if not side.links and not side.rides else ():
                 other = a.names[i]

@@ -23,6 +23,12 @@ def placed_links(robot: CellRobot) -> list[tuple[str, int, Array]]:
     return out
 
 
+def tool_links(robot: CellRobot) -> frozenset[str]:
+    """The names that the links of its tool have beside those of the arm."""
+    links = () if robot.tool is None else robot.tool.urdf.links
+    return frozenset(f"tool_{link}" for link in links)
+
+
 def _placed(tree: Urdf, link: str, moving: dict[str, int]) -> tuple[int, Array]:
     joint, frame = 0, np.eye(4)
     for step in tree.chain(link):

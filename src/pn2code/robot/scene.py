@@ -10,6 +10,7 @@ beside boxes, cylinders and meshes; nothing here knows what the cell is for.
 from __future__ import annotations
 
 import fnmatch
+import glob
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -30,7 +31,7 @@ from pn2code.robot.external import read_axes
 from pn2code.robot.frames import Frames, read_frames
 from pn2code.robot.hulls import Hull
 from pn2code.robot.kinematics import Kinematics
-from pn2code.robot.model import Arm, find_arm, find_tool
+from pn2code.robot.model import Arm, Tool, find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
 from pn2code.robot.robot_cell import (
     PART_CONTACT,
@@ -225,6 +226,7 @@ def _robot(t: Table, name: str, folder: Path, tools: Mapping[str, ToolKind]) -> 
     if kinematics is None or home is None:
         return None
     _expect_wrist(arm, kinematics, t.d)
+    _expect_links_apart(arm, tool, t)
     branch = {str(b): b for b in kinematics.branches}.get(branch_name)
     if branch is None and branch_name != "any":
         own_names = ", ".join(f"`{b}`" for b in kinematics.branches)
@@ -437,6 +439,18 @@ def _default_contacts(robots: tuple[CellRobot, ...], depth: float) -> list[Conta
     return touching + meeting
 
 
+def _expect_links_apart(arm: Arm, tool: Tool | None, t: Table) -> None:
+    """Tool and arm become one tree of links, and the names of the tool's get a prefix."""
+    links = () if tool is None else (x for x in tool.urdf.links if f"tool_{x}" in arm.urdf.links)
+    for link in links:
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"the link `tool_{link}` of the arm `{arm.name}` has the name that `{link}` of the tool gets",
+            t.at("tool"),
+            hint="give one of them another name in its file",
+        )
+
+
 def _gripping(
     robots: tuple[CellRobot, ...],
     kinds: Mapping[str, PartKind],
@@ -449,7 +463,7 @@ def _gripping(
         "floor",
         "panel/*",
         *belts,
-        *(o.name for o in objects),
+        *(glob.escape(o.name) for o in objects),
         *(f"{kind}.*" for kind in kinds),
         *(f"{r.name}/{table}" for r in robots for table in r.arm.tables),
     ]

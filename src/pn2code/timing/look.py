@@ -6,6 +6,7 @@ found.layouts[0].cycle.most
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -199,7 +200,9 @@ class _Look:
     def _cycle(self) -> Cycle:
         search, anyhow = self.search, self.anyhow
         is_known = not search.why
-        repeats = tuple(dict.fromkeys(map(self._transition, search.around()))) if is_known else ()
+        around = search.around() if is_known else []
+        occurring = (e for e in around if not self.graph.elements[e].is_step)
+        repeats = tuple(dict.fromkeys(map(self._transition, occurring)))
         at_least = at_most = None
         if not anyhow.why:
             at_least = anyhow.least()
@@ -217,7 +220,7 @@ class _Look:
         return Cycle(
             tuple(self._endings()),
             _clause(search.why),
-            tuple(n for n in repeats if not n.startswith("cell.")),
+            repeats,
             at_least,
             at_most,
             tuple(self._others(late)),
@@ -238,10 +241,15 @@ class _Look:
             search.why == "situations" and not (self.doings.why or self.doings.stops)
         )
         several = len(search.endings) > 1
+        taken = {""}
         for places, ending in search.endings.items():
             best = ending.best if is_first else None
             worst = ending.worst if is_known else None
-            short = "-" + places.replace(", ", "+").split(".")[-1] if several else ""
+            word = re.sub(r"[^\w+-]+", "_", places.replace(", ", "+").split(".")[-1])
+            numbered = (f"{word}{k}" for k in itertools.count(2))
+            own = word if word not in taken else next(x for x in numbered if x not in taken)
+            taken.add(own)
+            short = f"-{own}" if several else ""
             yield Ending(
                 places,
                 None if best is None else best.ns,
@@ -295,12 +303,11 @@ class _Look:
 
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
-        places = {p.name: p.index for p in self.graph.running.net.places}
         situations = self.search.situations
         # Where nothing more happens the supervisor still waits, and no answer comes.
         stuck = set(self.search.stuck)
         for owner in self.graph.partition.owners:
-            place = places.get(f"cell.{owner.name}.owes")
+            place = self.graph.running.owing.get(owner.index)
             if place is None:
                 continue
             marked = self.graph.marked
@@ -311,9 +318,8 @@ class _Look:
 
     def _owed_anyhow(self) -> Iterator[tuple[str, int | None]]:
         """The same in whatever order things end: no more than this."""
-        places = {p.name: p.index for p in self.graph.running.net.places}
         for owner in self.graph.partition.owners:
-            place = places.get(f"cell.{owner.name}.owes")
+            place = self.graph.running.owing.get(owner.index)
             if place is not None:
                 yield owner.phrase, self.anyhow.inside(place)
 
@@ -322,10 +328,9 @@ class _Look:
 
         Whoever waits meanwhile owes it for longer still, so only what is too long is known.
         """
-        places = {p.name: p.index for p in self.graph.running.net.places}
         elements, marked, shortest = self.graph.elements, self.graph.marked, self.anyhow.shortest
         for owner in self.graph.partition.owners:
-            place = places.get(f"cell.{owner.name}.owes")
+            place = self.graph.running.owing.get(owner.index)
             if place is None:
                 continue
             own = [

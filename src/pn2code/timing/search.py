@@ -89,8 +89,7 @@ class Search:
         self._kinds = kinds(self.graph)
         self._stopped = stops(self.graph)
         self._told: dict[int, frozenset[int]] = {}
-        places = {p.name: p.index for p in self.graph.running.net.places}
-        self._calm = places.get("cell.supervisor.calm", -1)
+        self._calm = self.graph.running.firing
 
     def explore(self, more: Callable[[], None] = lambda: None) -> None:
         """Goes through all of them, and finds the best and the worst; `more` hears of each."""

@@ -7,8 +7,6 @@ from enum import IntEnum
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.graph import CLOCK, CellGraph
 
-_ENDS = "cell.ends the robots"
-
 
 class Kind(IntEnum):
     """Kinds of elements."""
@@ -28,13 +26,12 @@ class Kind(IntEnum):
 def kinds(graph: CellGraph) -> list[Kind]:
     """That of each element, by its number."""
     owners = graph.partition.owners
-    names = [t.name for t in graph.running.net.transitions]
     out = []
     for e in graph.elements:
         if e.owner == CLOCK:
             out.append(Kind.CLOCK)
         elif e.is_step:
-            out.append(Kind.ENDS if names[e.transition].startswith(_ENDS) else Kind.STEP)
+            out.append(Kind.ENDS if e.transition == graph.running.ending else Kind.STEP)
         elif owners[e.owner].kind is OwnerKind.SUPERVISOR:
             out.append(Kind.FIRING)
         else:

@@ -197,3 +197,24 @@ def test_two_messages_of_one_occurrence_while_the_robot_works(tmp_path: Path) ->
     assert compared_with(file.text).deviation is None
     found = compared_with(hasty)
     assert found.deviation is not None and "(no data)" in found.deviation
+
+
+WAITING = """
+    place Idle = 1
+    trans Told code action drill ()
+      both Idle
+      in x : n
+"""
+
+
+def test_a_script_that_stops_where_it_is_to_wait(tmp_path: Path) -> None:
+    """Nothing else comes, so that nothing is enabled; but a script that stops stops the cell."""
+    cell = Cell(tmp_path, WAITING, ("x in INT",))
+    assert sent(WAITING, tmp_path).deviation is None
+    assert cell.text.count("  end loop") == 1
+    edited = cell.text.replace(
+        "  end loop", '    if n > 0 then\n      stop "n"\n    end if\n  end loop'
+    )
+    found = sent(WAITING, tmp_path, edited)
+    assert found.deviation is not None
+    assert "where its page waits for x" in found.deviation

@@ -164,7 +164,7 @@ def _certain(
         return replace(answer, node=None)
     if isinstance(asked, m.Response) and asked.time is not None:
         open_ = _WAITS
-    elif not means_the_same(asked):
+    elif not means_the_same(asked, answer.answer):
         is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
         open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
     elif all_orders and (answer.answer == "no" or is_fair):

@@ -38,7 +38,7 @@ sequence of the closed net in which priorities count among the transitions of an
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -46,8 +46,8 @@ from pn2code.base.frozen import frozen
 from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import SUPERVISOR, Channel, ChannelKind, Partition
 from pn2code.ml.core import terms as core
-from pn2code.net.builder import Arc, Builder, looks
-from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
+from pn2code.net.builder import Arc, Builder
+from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition, Role
 from pn2code.net.predicate import Predicate
 from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
@@ -118,6 +118,12 @@ class Running:
     """of the transitions of the cell's net"""
     resting: int
     """the place of a supervisor that rests"""
+    firing: int
+    """that of one that has read, and fires"""
+    owing: Mapping[int, int]
+    """by robot or device that gets flags: the place that is marked while it owes an answer"""
+    ending: int | None = None
+    """the step that ends the robots after the supervisor; None: there is none"""
     silences: tuple[Silence, ...] = ()
     unsure: int | None = None
     """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
@@ -329,6 +335,7 @@ class _Composer:
         truth = {c.name: c for c, _ in partition.net.program.datatypes["bool"].constructors}
         self.conditions = Conditions(truth["true"], truth["false"])
         self.going: int | None = None
+        self.ending: int | None = None
         if partition.final_places and len(partition.owners) > 1 and not loose:
             self.going = b.place("cell.robots.go on", b.unit)
             b.begin(self.going, b.dot)
@@ -368,6 +375,9 @@ class _Composer:
             moments=Moments.of(self.partition, [*self.machines.values()], self._timeless()),
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
+            firing=self.calm,
+            owing=self.owes,
+            ending=self.ending,
             silences=tuple(self._silences()),
             unsure=self.unsure,
         )
@@ -428,7 +438,7 @@ class _Composer:
             for step in program.steps:
                 places = [p for p, *_ in step.takes]
                 is_timed = any(self.b.places[p].colset.timed for p in places)
-                if looks(step.transition) and not is_timed:
+                if step.transition.role is Role.LOOK and not is_timed:
                     name = f"{self.partition.owners[owner].name}.{step.transition.short}"
                     yield step.transition.index, self.b.place(f"cell.{name}.passed", self.b.unit)
 
@@ -527,7 +537,7 @@ class _Composer:
         self._step(SUPERVISOR, "rests", at + 1, self._off(self.calm), self._on(self.idle))
         if self.going is not None:
             arcs = [self._has(self.over), self._off(self.going)]
-            self._step(SUPERVISOR, "ends the robots", at + 1, *arcs)
+            self.ending = self._step(SUPERVISOR, "ends the robots", at + 1, *arcs)
 
     def _writing(self) -> None:
         """What is written in an order that shows goes out in this order, before its robot does anything else."""
