@@ -52,8 +52,7 @@ def orders(
     touched = [t for t in touched if len(t) > 1]
     even = _sorted(_Spans(places, touched), first)
     narrow = _sorted(_Spans(places, touched, is_narrow=True), first)
-    as_written = [first, first[::-1].copy()]
-    found = [narrow[0], as_written[0], even[0], as_written[1], *narrow[1:2], *even[1:]]
+    found = [narrow[0], even[0], first, first[::-1].copy(), *narrow[1:2], *even[1:]]
     return [order.tolist() for order in {order.tobytes(): order for order in found}.values()]
 
 
