@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
 from functools import partial
+from pathlib import Path
 
+from helpers.coloured_families import shared_memory
 from pn2code.contest.diagrams import TRIED, Diagrams, as_written
 from pn2code.contest.engine import Task, ask, engine
 from pn2code.contest.tables import Tables
@@ -36,6 +39,21 @@ def test_colours_stay_together() -> None:
     places = {"idle": (0, 1, 2), "busy": (3, 4, 5), "lock": (6,)}
     net = Tables((1, 1, 1, 0, 0, 0, 1), (), (), places, {})
     assert as_written(net) == [0, 3, 6, 1, 4, 2, 5]
+
+
+def test_colours_together_make_a_small_diagram(tmp_path: Path) -> None:
+    """Place by place a diagram has to remember what all processors do."""
+    net = shared_memory(7).tables()
+    with engine(Diagnostics()) as program:
+        assert program is not None
+        nodes = []
+        for order in (list(range(len(net.initial))), Diagrams(net).orders[2]):
+            file = tmp_path / "net"
+            file.write_text(net.text(["0 reach dead"], order), encoding="ascii")
+            command = [str(program), str(file), "diagrams", "600", "1024", "1"]
+            done = subprocess.run(command, capture_output=True, text=True, check=True)
+            nodes.append(int(done.stdout.split()[1]))
+    assert nodes[1] * 5 < nodes[0], nodes
 
 
 def test_each_order_is_tried_until_diagrams_are_whole() -> None:
