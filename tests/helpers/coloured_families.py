@@ -25,10 +25,10 @@ def _enum(name: str, n: int, *, cyclic: bool = True) -> Enum:
     return Enum(tuple(f"{name}{i}" for i in range(n)), cyclic)
 
 
-def shared_memory() -> ColouredNet:
+def shared_memory(n: int = 3) -> ColouredNet:
     """Processors that use memories over one bus, each its own or another one's."""
     return ColouredNet(
-        {"P": _enum("p", 3), "PM": Product(("P", "P"))},
+        {"P": _enum("p", n), "PM": Product(("P", "P"))},
         {"x": "P", "y": "P"},
         {
             "Active": ("P", all_("P")), "Queue": ("P", None), "Memory": ("P", all_("P")),

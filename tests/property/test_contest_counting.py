@@ -140,7 +140,7 @@ def test_random_automata_as_values(program: Path) -> None:
         found = units_of(tables, time.monotonic() + SECONDS)
         total = Affine(0, dict.fromkeys(range(places), 1))
         sums = (Affine(1, {0: 2, places - 1: -1}),)
-        made = Counted.of(tables, (1,) * places, total, sums, found)
+        made = Counted.of(tables, (1,) * places, tuple(range(places)), total, sums, found)
         states, arcs, in_place, in_marking = graph.sizes
         most = max(1 + 2 * m[0] - m[-1] for m in graph.markings)
         expected = states, arcs, max(in_place, most), in_marking

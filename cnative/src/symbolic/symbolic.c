@@ -17,6 +17,7 @@ enum { STACK = 1 << 26, STACK_OF_LEVEL = 1 << 12, MOST_LEVELS = 1 << 20 };
 typedef struct run {
     tb_job_t *job;
     double seconds;
+    double patience; /* until the set is whole */
     bool is_sizes;
     sy_diagrams_t d;
     sy_frozen_t frozen;
@@ -95,8 +96,10 @@ static void *work(void *argument)
     if (setjmp(r->d.given_up) != 0) {
         tb_fail(TB_EXIT_TIME, "time is over");
     }
+    tb_limit_time((r->patience < r->seconds) ? r->patience : r->seconds);
     sy_make_events(&r->d);
     find_space(r);
+    tb_limit_time(r->seconds);
     if (r->is_sizes) {
         sy_say_sizes(&r->d, &r->frozen, r->job);
     } else {
@@ -109,7 +112,7 @@ static void *work(void *argument)
 }
 
 /* The functions call themselves from level to level: they need a stack of their own. */
-void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds)
+void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds, double patience)
 {
     static run_t r;
     pthread_attr_t attributes;
@@ -117,6 +120,7 @@ void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds)
     r.job = job;
     r.is_sizes = is_sizes;
     r.seconds = seconds;
+    r.patience = patience;
     if (job->net.places > (uint32_t)MOST_LEVELS) {
         tb_fail(TB_EXIT_MEMORY, "there are too many places");
     }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * tables.c - answer questions about a place/transition net.
  *
- *     tables FILE METHOD SECONDS MIB SEED
+ *     tables FILE METHOD SECONDS MIB SEED [PATIENCE]
  *
- * METHOD is walk, explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings). The exit
- * code is 0 when the method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory
+ * METHOD is walk, explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings). Diagrams
+ * that are not whole after PATIENCE (in seconds, too) are given up; the others go on. The exit code is 0 when the method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory
  * ran out.
  */
 #include "tables.h"
@@ -12,17 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ARGUMENTS = 6 };
+enum { ARGUMENTS = 6, WITH_PATIENCE };
 
 int main(int count, char **argument)
 {
     static tb_job_t job;
-    if (count != (int)ARGUMENTS) {
-        tb_fail(TB_EXIT_WRONG, "usage: tables FILE METHOD SECONDS MIB SEED");
+    if ((count != (int)ARGUMENTS) && (count != (int)WITH_PATIENCE)) {
+        tb_fail(TB_EXIT_WRONG, "usage: tables FILE METHOD SECONDS MIB SEED [PATIENCE]");
     }
     const char *method = argument[2];
     const double seconds = strtod(argument[3], NULL);
     const uint64_t seed = strtoull(argument[5], NULL, 10);
+    const double patience = (count == (int)WITH_PATIENCE) ? strtod(argument[6], NULL) : seconds;
     tb_start_clock(seconds);
     tb_limit_memory(strtoull(argument[4], NULL, 10) << 20U);
     tb_read(&job, argument[1]);
@@ -37,7 +38,7 @@ int main(int count, char **argument)
     } else if (strcmp(method, "ltl") == 0) {
         tb_ltl(&job, seed, seconds);
     } else if ((strcmp(method, "diagrams") == 0) || (strcmp(method, "sizes") == 0)) {
-        tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds);
+        tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds, patience);
     } else {
         tb_fail(TB_EXIT_WRONG, "`%s` is no method", method);
     }

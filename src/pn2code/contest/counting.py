@@ -50,6 +50,7 @@ class Counted:
     Args:
         tables: the net; transitions that change nothing are there to be counted.
         leaves: place -> places of the net before for which it stands.
+        kept: place -> its number in the net before.
         total: the tokens in a marking; of places with several leaves, the most that they can be.
         sums: the tokens of the places that are gone, likewise.
         units: sets of places of which one at most is marked, with one token.
@@ -59,6 +60,7 @@ class Counted:
 
     tables: Tables
     leaves: tuple[int, ...]
+    kept: tuple[int, ...]
     total: Affine
     sums: tuple[Affine, ...]
     units: tuple[tuple[int, ...], ...]
@@ -69,6 +71,7 @@ class Counted:
     def of(
         tables: Tables,
         leaves: tuple[int, ...],
+        kept: tuple[int, ...],
         total: Affine,
         sums: tuple[Affine, ...],
         units: tuple[tuple[int, ...], ...] = (),
@@ -78,11 +81,11 @@ class Counted:
         alone = [p for p in range(len(leaves)) if p not in level]
         level |= {p: (i, 0) for i, p in enumerate(alone, len(units))}
         drawn = _drawn(tables, level, len(units) + len(alone))
-        return Counted(tables, leaves, total, sums, units, level, drawn)
+        return Counted(tables, leaves, kept, total, sums, units, level, drawn)
 
     def without_units(self) -> Counted:
         """The same with a place of its own for each place."""
-        return Counted.of(self.tables, self.leaves, self.total, self.sums)
+        return Counted.of(self.tables, self.leaves, self.kept, self.total, self.sums)
 
     def text(self, order: Sequence[int]) -> str:
         """The net of diagrams with the sums as questions: first that of the marking, then those of places.
@@ -393,7 +396,8 @@ class _Counting:
             return None
         leaves = tuple(len(self.leaves[p]) for p in self.net.marking)
         units = units_of(tables, self.until)
-        return Counted.of(tables, leaves, total, tuple(made), units)
+        kept = tuple(self.net.marking)
+        return Counted.of(tables, leaves, kept, total, tuple(made), units)
 
     def _values(self) -> list[Affine]:
         """The tokens of each place, in those of leaves that are still there; the last ones to go come first."""

@@ -2,8 +2,10 @@
 
     diagrams = Diagrams(tables)
     diagrams.orders[0]                             # the most promising order of its places
+    for order, patience in diagrams.tries(0, range(TRIED), 8.0): ...
 
-Whether a diagram stays small depends on the order of its levels, so that each round of a portfolio takes another one.
+Whether a diagram stays small depends on the order of its levels, and one may take a thousandth of the time of another:
+several are tried for a short time, and each round of a portfolio has another one for most of its time.
 The engine says nothing before the set is whole: a diagram that explodes costs its share of time and memory, and
 nothing else.
 """
@@ -12,7 +14,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 from pn2code.contest.counting import Counted, smaller
@@ -24,6 +26,12 @@ METHOD = "diagrams"
 KINDS = ("reach", "bound", "ctl", "ltl")
 """The kinds of questions that it can answer."""
 
+TRIED = 4
+"""So many orders are tried for a short time."""
+_TRY = 0.1
+"""Of the time, for each of them."""
+_AGAIN = 1.5
+"""An order that was given up is tried again with so many times the patience."""
 _SHARES = (0.1, 0.15, 0.15, 0.6)
 """Of the time, for one order after the other where there are several."""
 _MAKING = 0.2
@@ -40,11 +48,40 @@ class Diagrams:
         self.counted: Counted | None = None
         """The net made smaller to be counted, once that was tried."""
         self.texts: list[str] | None = None
+        self.whole: int | None = None
+        """An order with which they were whole in time."""
+        self.patience: dict[int, float] = {}
+        """Order -> for how long it was tried in vain."""
 
     @cached_property
     def orders(self) -> list[list[int]]:
         """The most promising one first."""
-        return orders(len(self.tables.initial), self.tables.pre, self.tables.post)
+        t = self.tables
+        return orders(len(t.initial), t.pre, t.post, as_written(t))
+
+    def tries(
+        self, which: int, offered: Iterable[int], seconds: float
+    ) -> Iterator[tuple[int, float | None]]:
+        """Orders, and how long to wait for diagrams with them that are not whole; None: for all of the time.
+
+        Args:
+            which: the order that has what is left of the time.
+            offered: those that are tried before it, beginning with this one.
+            seconds: for all of them.
+        """
+        if not self.orders[0]:
+            return
+        which %= len(self.orders)
+        patience = _TRY * seconds
+        for order in dict.fromkeys([which, *(o for o in offered if o < len(self.orders))]):
+            if self.whole is None and patience >= _AGAIN * self.patience.get(order, 0.0):
+                yield order, patience
+                self.patience[order] = patience
+        yield (which if self.whole is None else self.whole), None
+
+    def note_whole(self, order: int) -> None:
+        """Diagrams with an order are whole."""
+        self.whole = order
 
     def sizes(self, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
@@ -76,12 +113,36 @@ class Diagrams:
         if self.counted is None:
             return [self.tables.text([], order) for order in self.orders[which::2]]
         if self.counted.units:
-            return _texts(self.counted if which == 0 else self.counted.without_units())
+            counted = self.counted if which == 0 else self.counted.without_units()
+            return _texts(counted, as_written(self.tables))
         if self.texts is None:
-            self.texts = _texts(self.counted)
+            self.texts = _texts(self.counted, as_written(self.tables))
         return self.texts[which::2]
 
 
-def _texts(counted: Counted) -> list[str]:
+def as_written(tables: Tables) -> list[int]:
+    """The places in the order of the file; those of coloured places colour by colour.
+
+    So what belongs to one process is together, whether the file has a place for each of its states, or its processes
+    are colours.
+    """
+    at = {i: (k / len(own), i) for own in tables.places.values() for k, i in enumerate(own)}
+    if len(tables.places) == len(at):
+        return list(range(len(tables.initial)))
+    return sorted(range(len(tables.initial)), key=lambda i: at.get(i, (1.0, i)))
+
+
+def _texts(counted: Counted, written: Sequence[int]) -> list[str]:
+    """With one order after the other.
+
+    Args:
+        counted: the net made smaller.
+        written: the places of the net before.
+    """
     t = counted.drawn
-    return [counted.text(order) for order in orders(len(t.initial), t.pre, t.post)]
+    rank = {p: i for i, p in enumerate(written)}
+    first: dict[int, int] = {}  # level -> the first of its places
+    for p, (at, _) in counted.level.items():
+        first[at] = min(rank[counted.kept[p]], first.get(at, len(rank)))
+    levels = sorted(first, key=first.__getitem__)
+    return [counted.text(order) for order in orders(len(t.initial), t.pre, t.post, levels)]

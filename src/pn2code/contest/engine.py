@@ -84,6 +84,8 @@ class Task:
         seed: of what it draws.
         added: number of a question -> what has to be added to its bound, since the net was reduced.
         technique: put before the name of the method, if the net was reduced.
+        patience: seconds after which diagrams are given up that are not whole; None: all that it may take.
+        on_whole: called when they are whole.
     """
 
     method: str
@@ -93,6 +95,8 @@ class Task:
     seed: int = 1
     added: Mapping[int, int] = field(default_factory=dict)
     technique: str = ""
+    patience: float | None = None
+    on_whole: Callable[[], None] | None = None
 
 
 Said = SimpleQueue[Answer | Space | Exception | None]
@@ -204,6 +208,7 @@ class _Lane(threading.Thread):
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
     limits = [f"{task.seconds:.3f}", str(task.mebibytes), str(task.seed)]
+    limits += [] if task.patience is None else [f"{task.patience:.3f}"]
     command = [str(program), str(path), task.method, *limits]
     return subprocess.Popen(
         command,
@@ -223,6 +228,8 @@ def _read(
     with process:
         assert process.stdout is not None and process.stderr is not None
         for line in process.stdout:
+            if line.startswith("seen ") and task.on_whole is not None:
+                task.on_whole()
             found = _parsed(line)
             if isinstance(found, Answer):
                 more = task.added.get(found.number, 0)

@@ -12,12 +12,13 @@ import re
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
 from pn2code.base.frozen import frozen, record
 from pn2code.contest.conditions import TRUE
-from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
+from pn2code.contest.diagrams import KINDS, METHOD, TRIED, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
@@ -45,7 +46,7 @@ _PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "
 """For reachability and bounds the methods of the two lanes, by round; the last but one is repeated at the end."""
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)
 _ORDERS = (0, 1, 0, 2)
-"""Orders of the places of diagrams, by round: the best one has the longest but one as well."""
+"""Orders of the places of diagrams that have most of the time, by round; the others are tried for a short time."""
 _ORDERS_ALONE = ((0, 1), (0, 1), (0, 2), (0, 3))
 """The same where diagrams have both lanes."""
 _SIDE_ROUNDS = 3
@@ -538,16 +539,20 @@ class _Portfolio:
                     is_whole = number == 0 or (
                         method == METHOD and number % 2 == 1 and kinds <= {"ctl", "ltl"}
                     )
-                    task = self._task(method, still, which, is_first=is_whole)
+                    task, net, texts = self._task(still, is_first=is_whole)
                     until_end = self.ends - time.monotonic()
                     if until_end < _LEAST_SLICE_S / 5:
                         return
-                    yield replace(
+                    task = replace(
                         task,
                         seconds=min(left, until_end),
                         mebibytes=self.mebibytes // lanes,
                         seed=2 * number + which + 1,
                     )
+                    if method == METHOD:
+                        yield from self._drawn(task, net, texts, which)
+                    else:
+                        yield replace(task, method=method, text=net.text([*texts.values()]))
 
     def _is_side(self, number: int) -> bool:
         """Whether a question is only asked since its answer would help with another one."""
@@ -566,8 +571,39 @@ class _Portfolio:
             found.setdefault(0 if smaller is None else id(smaller.tables), []).append(n)
         return list(found.values())
 
-    def _task(self, method: str, numbers: list[int], which: int, *, is_first: bool) -> Task:
-        """Some questions about the net that they share; in the beginning about the net as it is."""
+    def _drawn(self, task: Task, net: Tables, texts: dict[int, str], which: int) -> Iterator[Task]:
+        """Diagrams with one order of the places after the other, until those of one are whole.
+
+        Args:
+            task: its limits.
+            net: what it is about.
+            texts: of its questions, by number.
+            which: the order that has most of the time.
+        """
+        diagrams = self.diagrams.setdefault(id(net), Diagrams(net))
+        ends = time.monotonic() + task.seconds
+        is_alone = self.only == METHOD  # there are two lanes then
+        offered = range(which % 2, TRIED, 2) if is_alone else range(TRIED)
+        for order, patience in diagrams.tries(which, offered, task.seconds):
+            left = ends - time.monotonic()
+            still = [text for n, text in texts.items() if self.places[n].is_open]
+            if left < _LEAST_SLICE_S / 5 or not still:
+                return
+            text = net.text(still, diagrams.orders[order])
+            yield replace(
+                task,
+                method=METHOD,
+                text=text,
+                seconds=left,
+                patience=patience,
+                on_whole=partial(diagrams.note_whole, order),
+            )
+
+    def _task(self, numbers: list[int], *, is_first: bool) -> tuple[Task, Tables, dict[int, str]]:
+        """What some questions share: how to take an answer, the net, and what is said of it.
+
+        In the beginning it is the net as it is.
+        """
         smaller = {}
         for n in numbers if not is_first else ():
             asked = self.places[n].question
@@ -580,25 +616,19 @@ class _Portfolio:
         )
         if len(smaller) < len(numbers) or len(nets) != 1 or not is_told:
             tables, added, technique = self.tables, dict[int, int](), ""
-            texts = [f"{n} {self.places[n].part.text}" for n in numbers]
+            texts = {n: f"{n} {self.places[n].part.text}" for n in numbers}
         else:
             (tables,) = nets.values()
             added = {n: s.added for n, (_, s) in smaller.items()}
             technique = REDUCTION
-            texts = list(asked_of.values())
-        order = self._order(tables, which) if method == METHOD else ()
-        return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=technique)
+            texts = asked_of
+        return Task("", "", 0.0, 0, added=added, technique=technique), tables, texts
 
     def _fits(self, tables: Tables) -> bool:
         """Whether the engine can read a net; the answer is kept with the net, so that no other one gets its id."""
         if id(tables) not in self.fitting:
             self.fitting[id(tables)] = tables, tables.fits()
         return self.fitting[id(tables)][1]
-
-    def _order(self, tables: Tables, which: int) -> Sequence[int]:
-        """One of the orders of the places of a net, which is this one or a reduced one."""
-        orders = self.diagrams.setdefault(id(tables), Diagrams(tables)).orders
-        return orders[which % len(orders)] if orders else ()
 
 
 def _grace(seconds: float) -> float:

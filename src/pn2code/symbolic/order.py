@@ -1,10 +1,11 @@
 """Orders of places as levels of decision diagrams, from what the transitions connect.
 
-    orders(initial, pre, post)   # the most promising one first
+    orders(places, pre, post)   # the most promising one first
 
 A diagram is small where places that depend on each other are close. Which order is good is known when it was tried:
 several are made, and those first in which transitions reach over few levels (weighted event span: Siminiceanu, Ciardo
-2006). FORCE (Aloul, Markov, Sakallah 2003) moves places to the middle of their transitions again and again.
+2006). FORCE (Aloul, Markov, Sakallah 2003) moves places to the middle of their transitions again and again. The order
+in which somebody, or a tool that knew of processes, wrote the places down is among the first, whatever it costs.
 """
 
 from __future__ import annotations
@@ -30,33 +31,41 @@ Order = NDArray[np.int64]
 Arcs = Sequence[Mapping[int, int]]
 
 
-def orders(places: int, pre: Arcs, post: Arcs) -> list[list[int]]:
+def orders(
+    places: int, pre: Arcs, post: Arcs, written: Sequence[int] | None = None
+) -> list[list[int]]:
     """Orders of the places, from the top of the diagram downwards; different ones, the most promising one first.
 
     In some of them wide transitions count for little: one that looks at a place of each process would draw these
     places away from the others of their processes.
+
+    Args:
+        places: how many there are.
+        pre: what transitions take.
+        post: what they put.
+        written: the places in the order of the file; None: as they are.
     """
     if places == 0:
         return [[]]
+    first = np.arange(places, dtype=np.int64) if written is None else np.array(written, np.int64)
     touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
     touched = [t for t in touched if len(t) > 1]
-    even = _sorted(_Spans(places, touched))
-    narrow = _sorted(_Spans(places, touched, is_narrow=True))
-    found = [*narrow[:1], *even[:1], *narrow[1:2], *even[1:]]
+    even = _sorted(_Spans(places, touched), first)
+    narrow = _sorted(_Spans(places, touched, is_narrow=True), first)
+    found = [narrow[0], even[0], first, first[::-1].copy(), *narrow[1:2], *even[1:]]
     return [order.tolist() for order in {order.tobytes(): order for order in found}.values()]
 
 
-def _sorted(net: _Spans) -> list[Order]:
+def _sorted(net: _Spans, first: Order) -> list[Order]:
     """The different orders that are made, by their cost."""
     found: dict[bytes, Order] = {}
-    for order in _made(net):
+    for order in _made(net, first):
         better = order if net.cost(order) <= net.cost(order[::-1]) else order[::-1].copy()
         found.setdefault(better.tobytes(), better)
     return sorted(found.values(), key=net.cost)
 
 
-def _made(net: _Spans) -> Iterator[Order]:
-    first = np.arange(net.places, dtype=np.int64)
+def _made(net: _Spans, first: Order) -> Iterator[Order]:
     near = net.neighbours()
     starts = [
         first,

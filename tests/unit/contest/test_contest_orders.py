@@ -1,0 +1,91 @@
+"""Orders of the places of diagrams: which ones there are, and for how long each is tried."""
+
+from __future__ import annotations
+
+import subprocess
+from functools import partial
+from pathlib import Path
+
+from helpers.coloured_families import shared_memory
+from pn2code.contest.diagrams import TRIED, Diagrams, as_written
+from pn2code.contest.engine import Task, ask, engine
+from pn2code.contest.tables import Tables
+from pn2code.diagnostics import Diagnostics
+
+EXPENSIVE = 0.0
+"""A patience that is over before anything is whole."""
+
+
+def processes(cells: int) -> Tables:
+    """Philosophers, each written with its fork, as a tool does that knows of processes."""
+    pre: list[dict[int, int]] = []
+    post: list[dict[int, int]] = []
+    for i in range(cells):
+        own, fork, next_ = 3 * i, 3 * i + 2, (3 * i + 5) % (3 * cells)
+        pre += [{own: 1, fork: 1, next_: 1}, {own + 1: 1}]
+        post += [{own + 1: 1}, {own: 1, fork: 1, next_: 1}]
+    places = {f"p{i}": (i,) for i in range(3 * cells)}
+    transitions = {f"t{i}": (i,) for i in range(2 * cells)}
+    return Tables((1, 0, 1) * cells, tuple(pre), tuple(post), places, transitions)
+
+
+def test_the_order_of_the_file_is_tried_early_and_upside_down() -> None:
+    found = Diagrams(processes(40)).orders[:TRIED]
+    assert list(range(120)) in found
+    assert list(range(120))[::-1] in found
+
+
+def test_colours_stay_together() -> None:
+    places = {"idle": (0, 1, 2), "busy": (3, 4, 5), "lock": (6,)}
+    net = Tables((1, 1, 1, 0, 0, 0, 1), (), (), places, {})
+    assert as_written(net) == [0, 3, 6, 1, 4, 2, 5]
+
+
+def test_colours_together_make_a_small_diagram(tmp_path: Path) -> None:
+    """Place by place a diagram has to remember what all processors do."""
+    net = shared_memory(7).tables()
+    with engine(Diagnostics()) as program:
+        assert program is not None
+        nodes = []
+        for order in (list(range(len(net.initial))), Diagrams(net).orders[2]):
+            file = tmp_path / "net"
+            file.write_text(net.text(["0 reach dead"], order), encoding="ascii")
+            command = [str(program), str(file), "diagrams", "600", "1024", "1"]
+            done = subprocess.run(command, capture_output=True, text=True, check=True)
+            nodes.append(int(done.stdout.split()[1]))
+    assert nodes[1] * 5 < nodes[0], nodes
+
+
+def test_each_order_is_tried_until_diagrams_are_whole() -> None:
+    diagrams = Diagrams(processes(8))
+    assert [o for o, _ in diagrams.tries(1, range(TRIED), 10.0)] == [1, 0, 2, 3, 1]
+    tried = diagrams.tries(0, range(TRIED), 10.0)
+    assert list(tried) == [(0, None)], "the others were tried for as long before"
+    tried = diagrams.tries(0, range(TRIED), 100.0)
+    assert next(tried) == (0, 10.0)
+    assert next(tried) == (1, 10.0)
+    diagrams.note_whole(1)
+    assert list(tried) == [(1, None)]
+    assert list(diagrams.tries(2, range(TRIED), 100.0)) == [(1, None)]
+
+
+def test_without_places_there_is_nothing_to_try() -> None:
+    assert not list(Diagrams(Tables((), (), (), {}, {})).tries(0, range(TRIED), 1.0))
+
+
+def test_diagrams_that_are_not_whole_are_given_up_and_whole_ones_are_told() -> None:
+    net = processes(60)
+    whole: list[str] = []
+
+    def asked(patience: float | None, name: str) -> int:
+        text = net.text(["0 reach dead"], list(range(180)))
+        note = partial(whole.append, name)
+        task = Task("diagrams", text, 600.0, 512, patience=patience, on_whole=note)
+        return len(list(ask(program, [task])))
+
+    with engine(Diagnostics()) as program:
+        assert program is not None
+        assert asked(EXPENSIVE, "given up") == 0
+        assert asked(None, "all of the time") == 1
+        assert asked(500.0, "enough") == 1
+    assert whole == ["all of the time", "enough"]
