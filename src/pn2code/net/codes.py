@@ -207,6 +207,13 @@ LOCAL_NAME = register(
     "transition has as many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does "
     "as CPN Tools does.",
 )
+ENGINE_ORDER = register(
+    "engine-order",
+    "it is not known whether CPN Tools finds an order in which variables get values",
+    "CPN Tools refuses a transition for whose variables it finds no order in which tokens, equations and small colour "
+    "sets give them values. pn2code makes the same search, but gives it up where a transition has very many summands "
+    "and conditions. It accepts such a transition.",
+)
 GUARD_REPEATS = register(
     "guard-equation-repeats",
     "a guard equation has a variable twice on one side",
