@@ -41,5 +41,13 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`Word64.min`** is the smaller one; in the engine it is the larger one. `Word64.scan` takes no sign, and no blank after `0w`, as that of the other
   words; the engine takes both. `Int64.fromString` reads numbers of 64 bits; the engine raises `Overflow` above 2,147,483,647.
 * **`Real.nextAfter`** works; SML/NJ raises `Fail`. `String.fromCString` reads up to the first character that it cannot read; SML/NJ gives `NONE`.
+* **Exceptions that functions declare** are new ones in each call; here there is one for all calls, and a net in which a call may meet the exception of
+  another one is refused (`unsupported-exception`).
+* **`Bind` raised by what an input arc wants** (its value, coefficient or delay: `let val (x :: _) = f n in x end`) means to CPN Tools that there is no
+  binding, if `n` has its value from a token; here it stops the run, as any other exception.
+* **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
+* **Library**: of the 345 structures that the engine has in scope some 90 are there; of the others (its compiler, its inner parts, `Base64`, `GetOpt`,
+  `PathUtil`, `SplayTree`, `UTF8`, ...) each function is refused by its name (`unsupported-function`). Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
+  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`.
 * **Time zones**: dates are those of UTC.
 """

@@ -25,6 +25,7 @@ from pn2code.net.codes import (
     BINDING_CIRCLE,
     CODE_OUTPUT_BOUND,
     ENGINE_CODE,
+    ENGINE_ORDER,
     GUARD_REPEATS,
     LOCAL_NAME,
     SUMMANDS_SHARE,
@@ -203,7 +204,15 @@ class Planner:
         elif answer.kind in ("stuck", "large"):
             self.refuse(parts, answer, arcs, free)
             return False
-        if answer.kind == "":
+        elif answer.kind == "undecided":
+            self.d.warning(
+                ENGINE_ORDER,
+                f"it is not known whether CPN Tools accepts transition `{parts.name}`: its arcs and guard have too "
+                "many summands and conditions to find out whether its variables get values in some order",
+                parts.origin,
+                hint="divide it into two transitions, or take the tokens of a place by fewer summands",
+            )
+        if answer.kind in ("", "undecided"):
             self.warn_of_code(parts, arcs)
         return True
 

@@ -126,6 +126,13 @@ UNSUPPORTED_DECLARATION = register(
     "The declaration block has an element that is not a colour set, variable, reference or CPN ML "
     "text: a channel, or a declaration that CPN Tools itself could not read and kept as raw text.",
 )
+UNSUPPORTED_EXCEPTION = register(
+    "unsupported-exception",
+    "an exception of a function may be met in another call of it",
+    "Each call of a function makes the exceptions that it declares anew, so that a handler in one call does not handle "
+    "what another call has raised. In pn2code there is one for all calls. Where a call may meet the exception of "
+    "another one (the function calls itself, or gives away a function that raises it), the net is refused.",
+)
 UNSUPPORTED_TIMED_INPUT = register(
     "unsupported-timed-input",
     "this form of timed input inscription is not supported",
@@ -199,6 +206,13 @@ LOCAL_NAME = register(
     "variable, too: without a value from elsewhere CPN Tools tries all values of a small colour set, so that the "
     "transition has as many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does "
     "as CPN Tools does.",
+)
+ENGINE_ORDER = register(
+    "engine-order",
+    "it is not known whether CPN Tools finds an order in which variables get values",
+    "CPN Tools refuses a transition for whose variables it finds no order in which tokens, equations and small colour "
+    "sets give them values. pn2code makes the same search, but gives it up where a transition has very many summands "
+    "and conditions. It accepts such a transition.",
 )
 GUARD_REPEATS = register(
     "guard-equation-repeats",

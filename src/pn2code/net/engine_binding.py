@@ -1,7 +1,7 @@
 """What CPN Tools' syntax check says of the variables of a transition, without a word of who is right.
 
     answer = examine(arcs, guards, reader, is_small)
-    answer.kind   # "" accepted; "stuck", "large" refused; "tables", "repeats" it ends with an internal error
+    answer.kind   # "" accepted; "stuck", "large" refused; "undecided"; "tables", "repeats" an internal error
     answer.parted # arcs from one place whose variables it takes for others, whatever the kind is
 
 It looks at the arcs that only take tokens first, the last one of the file first, then at those in both directions in
@@ -18,11 +18,11 @@ from typing import Literal
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Exp, Symbol
 from pn2code.net.engine_parts import PartReader
-from pn2code.net.engine_search import LargeError, StuckError, search
+from pn2code.net.engine_search import LargeError, StuckError, UndecidedError, search
 from pn2code.net.engine_tables import BrokenError, Tables
 from pn2code.net.flat import ArcInscription, ArcKind
 
-Kind = Literal["", "stuck", "large", "tables", "repeats"]
+Kind = Literal["", "stuck", "large", "undecided", "tables", "repeats"]
 
 
 @frozen
@@ -47,8 +47,8 @@ class Answer:
     """What CPN Tools says.
 
     Args:
-        kind: accepted; no order is found, or a variable of a large colour set is left; the tables break, or a variable
-            that is twice in a coefficient or a condition is not known.
+        kind: accepted; no order is found, or a variable of a large colour set is left; it is not known; the tables
+            break, or a variable that is twice in a coefficient or a condition is not known.
         names: of the last but two: variables that get no value.
         parted: an arc at which the tables break or from which on they are wrong, and an earlier one from its place.
     """
@@ -95,6 +95,8 @@ def examine(
         return Answer("stuck", names, parted)
     except LargeError as error:
         return Answer("large", frozenset({error.name}), parted)
+    except UndecidedError:
+        return Answer("undecided", parted=parted)
     except BrokenError as error:
         return Answer("repeats" if str(error) == "get_vids" else "tables", parted=parted)
     return Answer("", parted=parted)

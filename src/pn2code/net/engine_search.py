@@ -23,7 +23,7 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.net.engine_tables import BrokenError, Group, Leaf, Name, Tables
 
 MOST = 20_000
-"""Markings that are looked at; where there are more, an order is taken to exist."""
+"""Markings that are looked at; where there are more, it is not known whether there is an order."""
 
 
 class StuckError(Exception):
@@ -32,6 +32,10 @@ class StuckError(Exception):
     def __init__(self, names: frozenset[Name]) -> None:
         super().__init__()
         self.names = names
+
+
+class UndecidedError(Exception):
+    """No order was found among the first `MOST` markings, and there are more."""
 
 
 class LargeError(Exception):
@@ -83,6 +87,7 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
 
     Raises:
         StuckError: there is none.
+        UndecidedError: it is not known.
         LargeError: a variable could get its value by trying only, and has too many.
         BrokenError: CPN Tools' check ends with an internal error.
     """
@@ -102,7 +107,7 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
             continue
         seen.add(marking)
         if len(seen) > MOST:
-            return
+            raise UndecidedError
         if (marking & every).bit_count() > best.bit_count() or not best:
             best = marking & every
         for s in others:

@@ -9,7 +9,7 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostic, Diagnostics, TooManyDiagnosticsError
 from pn2code.ml.codes import UNBOUND, UNKNOWN_COLOUR_SET
 from pn2code.ml.core.computing import Compute
-from pn2code.net import guard_order
+from pn2code.net import generative, guard_order
 from pn2code.net.check import check
 from pn2code.net.codes import (
     NEIGHBOUR_WRONG,
@@ -95,6 +95,8 @@ def _examine(
         check_hierarchy(typed, d)
         return Examined(document, None)
     flat = flatten(typed, d)
+    if flat is not None and generative.refuse(flat, d):
+        return Examined(document, None, typed)
     if flat is not None:
         guard_order.warn(flat, d)
     return Examined(document, flat, typed)

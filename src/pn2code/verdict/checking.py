@@ -21,10 +21,14 @@ from pn2code.input_files import begin
 from pn2code.net import emptiness, free_variables, front
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
+from pn2code.semantics.evaluation.effects import Effects, outside
+from pn2code.semantics.game.enabling import GameError, GivenUpError
+from pn2code.semantics.game.token_game import Game
 
 if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
     from pn2code.cell.partition import Partition
+    from pn2code.net.flat import FlatNet
 
 
 @frozen
@@ -73,6 +77,8 @@ def check(
     result = front.examine(file, d, replaced, int_bits=int_bits, compute=compute)
     if result.flat is not None:
         emptiness.warn(result.flat, d)
+        if not d.has_errors:
+            _begins(result.flat, d)
     channels: tuple[ChannelRow, ...] = ()
     if config is not None:
         if not d.has_errors:
@@ -94,6 +100,22 @@ def check(
     return Checked(
         file, result, is_fine=result.flat is not None and not d.has_errors, channels=channels
     )
+
+
+def _begins(net: FlatNet, d: Diagnostics) -> None:
+    """The exception that an initial marking raises, or its colour that is none: CPN Tools refuses such a net.
+
+    What is drawn at random, or read from files, may be otherwise in a run.
+    """
+    if outside(Effects(net.program), net):
+        return
+    try:
+        Game(net, seed=1)
+    except GivenUpError:
+        return
+    except GameError as error:
+        if not error.is_unavailable:
+            error.report(d)
 
 
 def _unneeded(config: CellConfig, d: Diagnostics) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.netbuilder import diagnose
+from pn2code.net import engine_search
 
 HEAD = """
     net N
@@ -167,3 +168,12 @@ def test_a_long_delay_on_an_input_arc_is_no_pattern(arcs: str, codes: list[str])
 def test_what_is_taken_beyond_cpn_tools_is_not_refused_for_its_sake() -> None:
     found = diagnose(DELAYED + "        guard [n > 1]\n        in D : w as V n")
     assert [(e.severity.name, e.code) for e in found.items] == [("WARNING", "arc-as-pattern")]
+
+
+def test_a_search_that_is_given_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = HEAD + "        in P : 1`(a,b,1)++1`(c,d,1)++1`(a,c,1)\n"
+    assert "engine-order" not in {x.code for x in diagnose(text).items}
+    monkeypatch.setattr(engine_search, "MOST", 1)
+    found = diagnose(text)
+    assert not found.errors
+    assert "engine-order" in {x.code for x in found.items}

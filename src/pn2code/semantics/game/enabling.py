@@ -60,6 +60,8 @@ class GameError(Exception):
         super().__init__(self.message)
         self.origin = origin
         self.span = span
+        self.is_unavailable = False
+        """Whether it applied what is in CPN Tools, but not here."""
 
     def __str__(self) -> str:
         """The message with its place."""
@@ -108,7 +110,9 @@ class running:  # noqa: N801 - a context manager reads as a word
             message = f"{self.doing} raised the exception `{raised}`"
             raise GameError(message, origin, raised.span) from None
         if isinstance(raised, MlUnavailable):
-            raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
+            problem = GameError(f"{self.doing} cannot go on: {raised}", origin)
+            problem.is_unavailable = True
+            raise problem from None
         if isinstance(raised, MlLimit | RecursionError):
             raise GivenUpError(f"{self.doing} was given up: {raised}", origin) from None
         if isinstance(raised, MemoryError):
