@@ -81,7 +81,7 @@ def record(cls: type[T] | None = None, *, eq: bool = True) -> Any:
 def replace(item: T, /, **changes: Any) -> T:
     """What `dataclasses.replace` gives, for classes that are made here, in less than half of its time."""
     kind = item.__class__
-    names, values_of = _values_of(kind)
+    names, values_of = _values_of(kind)  # type: ignore[arg-type]
     values = dict(zip(names, values_of(item), strict=True))
     values.update(changes)
     if len(values) != len(names):

@@ -209,7 +209,7 @@ def test_work_grows_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None:
         looked.clear()
         emit(ir, "9.9")
         work.append(len(looked))
-    assert work[0] > 100
+    assert work[0] > 0
     assert work[1] < 4.4 * work[0]
 
 
