@@ -79,7 +79,7 @@ def _counted(node: T, lists: dict[int, ir.PlaceTokens]) -> T:
     before = {name: getattr(node, name) for name in fields}
     after = {name: _counted(value, lists) for name, value in before.items()}
     changed = {name: value for name, value in after.items() if value is not before[name]}
-    return replace(node, **changed) if changed else node  # type: ignore[type-var]
+    return replace(node, **changed) if changed else node
 
 
 def _is_outside(e: core.Exp) -> bool:
