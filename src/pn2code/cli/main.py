@@ -116,7 +116,9 @@ def _command(verb: str) -> Any:
 def _made(verb: str, function: Callable[..., None], epilog: str) -> Any:
     """The command of a function. Its annotations are evaluated once in a process, however often it is called."""
     single = typer.Typer(add_completion=False)
-    decorated = single.command(verb, cls=_Verb, help=_flowing(function.__doc__), epilog=epilog)
+    decorated = single.command(
+        verb, cls=_Verb, help=_flowing(function.__doc__ or ""), epilog=epilog
+    )
     decorated(function)
     return typer.main.get_command(single)
 
