@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import atexit
 import ctypes
-import importlib
 import os
 import select
 import signal
@@ -24,12 +23,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
+from pn2code.cli import main
 from pn2code.cli.main import VERBS, play
 
 DEADLINE_S = 600.0
 """Ends what hangs. Nothing takes that long, on however busy a machine."""
 for _verb in VERBS:
-    importlib.import_module(f"pn2code.cli.{_verb}")  # once, and not in each process
+    main._command(_verb)  # loaded and made once, and not in each process
 
 
 class Child:

@@ -78,6 +78,27 @@ def record(cls: type[T] | None = None, *, eq: bool = True) -> Any:
     return changing if cls is None else changing(cls)
 
 
+def replace(item: T, /, **changes: Any) -> T:
+    """What `dataclasses.replace` gives, for classes that are made here, in less than half of its time."""
+    kind = item.__class__
+    names, values_of = _values_of(kind)  # type: ignore[arg-type]
+    values = dict(zip(names, values_of(item), strict=True))
+    values.update(changes)
+    if len(values) != len(names):
+        unknown = ", ".join(sorted(changes.keys() - set(names)))
+        raise TypeError(f"{kind.__name__} has no {unknown}")
+    return kind(*values.values())
+
+
+@cache
+def _values_of(kind: type) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]]]:
+    """The names of a class's fields, and what gives their values."""
+    names = tuple(kind.__dataclass_fields__)  # type: ignore[attr-defined]
+    if len(names) > 1:
+        return names, attrgetter(*names)
+    return names, lambda item: tuple(getattr(item, name) for name in names)
+
+
 def _made(cls: type[T], eq: bool, is_frozen: bool = True) -> type[T]:
     inherited: dict[str, dataclasses.Field[Any]] = {}
     for base in reversed(cls.__mro__[1:]):

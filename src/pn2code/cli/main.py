@@ -11,8 +11,9 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from types import FrameType
 from typing import Annotated, Any, NoReturn
 
@@ -108,10 +109,15 @@ def _named(verb: str) -> Any:
 
 def _command(verb: str) -> Any:
     module = importlib.import_module(f"pn2code.cli.{verb}")
+    return _made(verb, getattr(module, verb), module.EPILOG)
+
+
+@cache
+def _made(verb: str, function: Callable[..., None], epilog: str) -> Any:
+    """The command of a function. Its annotations are evaluated once in a process, however often it is called."""
     single = typer.Typer(add_completion=False)
-    function = getattr(module, verb)
     decorated = single.command(
-        verb, cls=_Verb, help=_flowing(function.__doc__), epilog=module.EPILOG
+        verb, cls=_Verb, help=_flowing(function.__doc__ or ""), epilog=epilog
     )
     decorated(function)
     return typer.main.get_command(single)

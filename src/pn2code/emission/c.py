@@ -322,8 +322,8 @@ class _Emitter(Transitions):
                 else:
                     element, kind, origin = self._blocks[number]
                     blocks.append(Block(element, kind, origin, start[number], len(lines)))
-            elif line.strip() or (lines and lines[-1].strip()):
-                lines.append(line.rstrip())
+            elif (text := line.rstrip()) or (lines and lines[-1]):
+                lines.append(text)
         return "\n".join(lines) + "\n", tuple(blocks)
 
 

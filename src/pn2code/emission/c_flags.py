@@ -8,6 +8,8 @@ otherwise (`-ffast-math`), or where it computes with more than double precision 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from functools import lru_cache
 
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
@@ -41,16 +43,29 @@ FALSE_ALARM = "-Wno-maybe-uninitialized"
 
 
 _MOVES = re.compile(r"_(?:take|add|undo)\(")
-_BODY = re.compile(r"^\{\n.*?^\}$", re.MULTILINE | re.DOTALL)
 
 
 def is_large(generated: str) -> bool:
     """Whether compiling this C for speed would take longer than is gained."""
-    return (
-        len(generated) > LARGE
-        or len(_MOVES.findall(generated)) > MANY_MOVES
-        or any(len(body[0]) > LONG_FUNCTION for body in _BODY.finditer(generated))
-    )
+    if len(generated) > LARGE:
+        return True
+    moves, longest = _measured(generated)
+    return moves > MANY_MOVES or longest > LONG_FUNCTION
+
+
+@lru_cache(maxsize=8)
+def _measured(generated: str) -> tuple[int, int]:
+    """The moves of tokens, and the characters of the longest function. Each build asks several times."""
+    return len(_MOVES.findall(generated)), max(_lengths(generated), default=0)
+
+
+def _lengths(generated: str) -> Iterator[int]:
+    """Of the functions' bodies, from the line `{` to the line `}`."""
+    text = f"\n{generated}\n"
+    begin = text.find("\n{\n")
+    while begin >= 0 and (end := text.find("\n}\n", begin + 2)) >= 0:
+        yield end + 1 - begin
+        begin = text.find("\n{\n", end + 2)
 
 
 def for_net(generated: str) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache
 from operator import attrgetter
 from typing import Any
 
@@ -21,14 +20,20 @@ def called(item: object) -> list[str]:
 
 def ir_nodes(item: object) -> Iterator[object]:
     """All IR nodes in a statement, expression or tuple of them; types are none."""
+    # The innermost loop of all passes: what is known of classes is looked up without a call.
     waiting: list[Any] = [item]
+    following, known = waiting.pop, _KNOWN
     while waiting:
-        node = waiting.pop()
-        if isinstance(node, tuple):
+        node = following()
+        kind = node.__class__
+        if kind is tuple:
             waiting += node[::-1]
-        elif (parts := _parts(node.__class__)) is not None:
+            continue
+        parts = known[kind]
+        if parts is not None:
             yield node
-            waiting += parts(node)
+            if parts is not _nothing:
+                waiting += parts(node)
 
 
 _VALUE = "bool | int | float | str | None"
@@ -41,11 +46,10 @@ _LEAVES = frozenset(
 
 def parts_of(node: Any) -> Sequence[object]:
     """The fields of a node that may contain nodes, from the last to the first; nothing for what is no node."""
-    getter = _parts(node.__class__)
+    getter = _KNOWN[node.__class__]
     return () if getter is None else getter(node)
 
 
-@cache
 def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
     """What gives the fields of a node that may contain nodes, from the last to the first; None for what is no node."""
     fields = getattr(kind, "__dataclass_fields__", {})
@@ -54,11 +58,27 @@ def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
     names = tuple(reversed([name for name, f in fields.items() if f.type not in _LEAVES]))
     match names:
         case ():
-            return lambda node: ()
+            return _nothing
         case (name,):
             return lambda node: (getattr(node, name),)
         case _:
             return attrgetter(*names)
+
+
+def _nothing(_node: object) -> tuple[()]:
+    """The parts of a node that has none."""
+    return ()
+
+
+class _Known(dict[type, Callable[[Any], Sequence[Any]] | None]):
+    """What `_parts` says of a class, asked once."""
+
+    def __missing__(self, kind: type) -> Callable[[Any], Sequence[Any]] | None:
+        found = self[kind] = _parts(kind)
+        return found
+
+
+_KNOWN = _Known()
 
 
 def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:

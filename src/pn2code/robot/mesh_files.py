@@ -5,7 +5,9 @@ points, triangles = read(Path("link_1.obj"))      # NoMesh, or OSError, if it ca
 
 from __future__ import annotations
 
+import re
 import struct
+from io import StringIO
 from pathlib import Path
 from typing import TypeAlias
 
@@ -15,6 +17,9 @@ from numpy.typing import NDArray
 Points: TypeAlias = NDArray[np.float64]
 Triangles: TypeAlias = NDArray[np.int64]
 
+_KINDS = frozenset("vf")
+_MORE = re.compile("/[^ ]*")
+"""What a face says of a corner besides its point."""
 _STL_HEAD, _STL_ROW = 84, 50
 
 
@@ -37,9 +42,37 @@ def merged(corners: Points) -> tuple[Points, Triangles]:
 
 def _obj(path: Path) -> tuple[Points, Triangles]:
     """Points and faces of a Wavefront file; all else (normals, textures, materials) is passed over."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return _plain_obj(text) or _any_obj(text)
+
+
+def _plain_obj(text: str) -> tuple[Points, Triangles] | None:
+    """Those of a file as most programs write them: points of three numbers, then triangles that count from 1.
+
+    None: it is not of that kind, or something is wrong with it, of which the reader of every form knows more.
+    """
+    corners: list[str] = []
+    faces: list[str] = []
+    for line in text.split("\n"):
+        kind = line[:2]
+        if kind in ("v ", "f ") and line.count(" ") == 3:
+            (corners if kind == "v " else faces).append(line[2:])
+        elif kind[:1].isspace() or (kind[:1] in _KINDS and (len(kind) < 2 or kind[1].isspace())):
+            return None
+    try:
+        points = np.array([float(w) for w in " ".join(corners).split(" ")]).reshape(-1, 3)
+        numbers = [int(w) - 1 for w in _MORE.sub("", " ".join(faces)).split(" ")]
+    except ValueError:
+        return None
+    if min(numbers) < 0 or max(numbers) >= len(points):
+        return None
+    return points, np.array(numbers, np.int64).reshape(-1, 3)
+
+
+def _any_obj(text: str) -> tuple[Points, Triangles]:
     points: list[list[float]] = []
     triangles: list[tuple[int, int, int]] = []
-    with path.open(encoding="utf-8", errors="replace") as lines:
+    with StringIO(text) as lines:
         for number, line in enumerate(lines, 1):
             words = line.split()
             try:

@@ -25,7 +25,7 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows
 from pn2code.structure.core_terms import is_multiset
 from pn2code.structure.skeleton import Skeleton
-from pn2code.structure.sums import Component, Image, Part, Step, add, image_type, scaled
+from pn2code.structure.sums import Component, Image, Part, Step, Sum, add, image_type, scaled
 from pn2code.structure.symbolic import Symbolic
 
 Vector = dict["Projection", int]
@@ -114,6 +114,7 @@ class _Search:
                 delta = add(flow.put.get(place, {}), scaled(flow.take.get(place, {}), -1))
                 if delta:
                     self._deltas[place][t] = delta
+        self._known: dict[tuple[int, tuple[Step, ...], int], Sum] = {}
         self._functions = symbolic.functions()
         datatypes = net.program.datatypes
         self._rows: dict[Type, dict[Projection, dict[int, int]]] = {}
@@ -146,12 +147,22 @@ class _Search:
 
     def _row(self, projection: Projection) -> dict[int, int]:
         row: dict[int, int] = {}
-        for t, delta in self._deltas[projection.place].items():
-            facts = self.skeleton.flows[t].facts
-            for part, n in self.symbolic.project(delta, projection.steps, facts).items():
+        for t in self._deltas[projection.place]:
+            for part, n in self._projected(projection.place, projection.steps, t).items():
                 column = self._columns.setdefault((t, part), len(self._columns))
                 row[column] = n
         return row
+
+    def _projected(self, place: int, steps: tuple[Step, ...], t: int) -> Sum:
+        """The change of a place under these steps; it goes on from what it is under all but the last one."""
+        if not steps:
+            return self._deltas[place][t]
+        key = place, steps, t
+        if key not in self._known:
+            before = self._projected(place, steps[:-1], t)
+            facts = self.skeleton.flows[t].facts
+            self._known[key] = self.symbolic.project(before, steps[-1:], facts)
+        return self._known[key]
 
     def invariants(self) -> list[tuple[Type, Vector]]:
         """The minimal semi-positive invariants over all types, then a basis of what does not follow from them; without

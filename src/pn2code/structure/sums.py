@@ -10,12 +10,21 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import Type
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Atom:
-    """An expression; with effects, `serial` makes it differ from all others."""
+    """An expression; with effects, `serial` makes it differ from all others. It remembers its hash, as `Part` does."""
 
     value: core.Exp
     serial: int = 0
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Computes the hash."""
+        object.__setattr__(self, "_hash", hash((self.value, self.serial)))
+
+    def __hash__(self) -> int:
+        """That of its fields."""
+        return self._hash
 
 
 @dataclass(frozen=True, slots=True)

@@ -328,7 +328,8 @@ class Symbolic:
 
     def _judged(self, e: core.Exp, facts: Facts) -> core.Exp:
         """A condition that the guard decides."""
-        truth = facts.known.get(e)
+        # Most guards decide nothing, and looking an expression up means going through it.
+        truth = facts.known.get(e) if facts.known else None
         if truth is None:
             return e
         name = "true" if truth else "false"

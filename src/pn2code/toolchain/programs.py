@@ -94,7 +94,7 @@ class Host:
     def runtime(self) -> tuple[OutputFile, ...]:
         """The C runtime as this host needs it."""
         found = runtime.emit(self.name, *self.also)
-        return tuple(f for f in found if self._needs(Path(f.path).name))
+        return tuple(f for f in found if self._needs(f.path.rpartition("/")[2]))
 
     def _needs(self, name: str) -> bool:
         is_wanted = not self.only or name.endswith(".h") or any(fnmatch(name, p) for p in self.only)
@@ -441,10 +441,12 @@ class _Builder:
 
 
 def _put(room: Path, files: Sequence[OutputFile]) -> None:
-    for folder in sorted({os.path.dirname(f.path) for f in files}):  # noqa: PTH120 - of a hundred names
+    # Names are put together as texts: there are a hundred for each program.
+    for folder in sorted({f.path.rpartition("/")[0] for f in files}):
         (room / folder).mkdir(parents=True, exist_ok=True)
     for f in files:
-        (room / f.path).write_text(f.text, encoding="utf-8")
+        with open(f"{room}/{f.path}", "w", encoding="utf-8") as file:  # noqa: PTH123
+            file.write(f.text)
 
 
 @lru_cache(maxsize=16)

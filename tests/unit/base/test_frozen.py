@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from pn2code.base import frozen as own
 from pn2code.base.frozen import frozen, record
 
 
@@ -201,3 +202,24 @@ def test_records_can_be_changed() -> None:
     with pytest.raises(AttributeError):
         item.other = 1  # type: ignore[attr-defined]
     assert Place() != Place() and hash(Place()) is not None
+
+
+@pytest.mark.parametrize("item", [Base("a", 2, 3.5), Derived("a", extra=(1,)), Reference("a")])
+@pytest.mark.parametrize("changes", [{}, {"size": 7}, {"span": 0.0, "name": "b"}])
+def test_replaced_as_by_the_standard_library(item: Any, changes: dict[str, Any]) -> None:
+    found, expected = own.replace(item, **changes), replace(item, **changes)
+    assert found == expected
+    assert type(found) is type(expected)
+    assert [getattr(found, f.name) for f in fields(found)] == [
+        getattr(expected, f.name) for f in fields(expected)
+    ]
+
+
+def test_replaced_with_one_field_or_none() -> None:
+    assert own.replace(One((1,)), value=2) == One(2)
+    assert own.replace(Empty()) == Empty()
+
+
+def test_replacing_what_is_no_field() -> None:
+    with pytest.raises(TypeError, match="Base has no colour"):
+        own.replace(Base("a"), colour=1)

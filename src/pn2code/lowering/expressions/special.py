@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from pn2code.base.frozen import replace
 from pn2code.diagnostics import Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, IrType, Rep

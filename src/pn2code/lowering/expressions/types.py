@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.diagnostics import NOWHERE, Origin, Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Definition, Descriptor, IrType, Rep

@@ -8,10 +8,10 @@ and then there is no `NetIR`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
+from pn2code.base.frozen import replace
 from pn2code.base.how_far import counted
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin

@@ -12,10 +12,9 @@ their base.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Protocol
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.types import Descriptor, Rep
 from pn2code.ml.core.colsets import Kind

@@ -6,9 +6,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TypeVar
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.lowering.codes import OUTSIDE_MARKING, UnsupportedError
@@ -79,7 +79,7 @@ def _counted(node: T, lists: dict[int, ir.PlaceTokens]) -> T:
     before = {name: getattr(node, name) for name in fields}
     after = {name: _counted(value, lists) for name, value in before.items()}
     changed = {name: value for name, value in after.items() if value is not before[name]}
-    return replace(node, **changed) if changed else node  # type: ignore[type-var]
+    return replace(node, **changed) if changed else node
 
 
 def _is_outside(e: core.Exp) -> bool:

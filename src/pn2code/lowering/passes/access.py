@@ -9,8 +9,8 @@ statement.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.base.how_far import counted
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Rep

@@ -10,8 +10,8 @@ of the initial marking, which stay for some time, and one arriving token.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.types import Definition, IrType, Rep, StructDef

@@ -7,8 +7,8 @@ how large integers can be (`ranges`).
 from __future__ import annotations
 
 from collections.abc import Container, Iterable
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.types import is_restricted
 from pn2code.lowering.passes.ranges import Ranges, known_tables

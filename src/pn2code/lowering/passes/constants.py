@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 
 

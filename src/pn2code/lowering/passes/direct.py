@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.lowering.passes.moves import is_count

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 
 

@@ -12,9 +12,8 @@ kept.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Transition
 from pn2code.lowering.passes.alike import alike, has_places_by_table

@@ -8,8 +8,8 @@ after that the arc is a comparison, addition or subtraction of words (`place_has
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor

@@ -7,11 +7,11 @@ programs of the net; after it, everything that is still there is printed.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cache
 from operator import is_
 from typing import Any
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes, parts_of
 from pn2code.ir.nodes import Ir, Rep, Stmt

@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
+from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.allocating import maker
 from pn2code.ir.calls import called, ir_nodes

@@ -8,9 +8,10 @@ A safe guess from the text: a function that is mentioned counts as applied, both
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import Enum
 from functools import cache
+from operator import attrgetter
 from typing import Any
 
 from pn2code.ml.core import terms as core
@@ -139,14 +140,15 @@ class Effects:
         todo: list[Any] = [node]
         while todo:
             item = todo.pop()
-            if isinstance(item, core.Builtin):
+            kind = item.__class__
+            if isinstance(item, tuple):
+                todo += item
+            elif (parts := _parts(kind)) is not None:
+                todo += parts(item)
+            elif kind is core.Builtin:
                 found |= _builtin(item.name)
-            elif isinstance(item, core.Symbol):
+            elif kind is core.Symbol:
                 found |= self._of_symbol.get(item.uid, NONE)
-            elif isinstance(item, tuple):
-                todo.extend(item)
-            else:
-                todo.extend(getattr(item, name) for name in _parts(item.__class__))
         return frozenset(found)
 
 
@@ -167,11 +169,19 @@ def texts(net: FlatNet) -> Iterator[Any]:
 
 
 @cache
-def _parts(kind: type) -> tuple[str, ...]:
-    """The fields in which a term has others; none of what is no term."""
-    if kind.__module__ != core.__name__:
-        return ()
-    return tuple(name for name in kind.__slots__ if name not in _LEAVES)  # type: ignore[attr-defined]
+def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
+    """What gives the parts of a term in which others are; None for what has none, or has effects itself."""
+    if kind.__module__ != core.__name__ or kind in (core.Builtin, core.Symbol):
+        return None
+    slots: Iterable[str] = kind.__slots__  # type: ignore[attr-defined]
+    names = tuple(name for name in slots if name not in _LEAVES)
+    match names:
+        case ():
+            return None
+        case (name,):
+            return lambda item: (getattr(item, name),)
+        case _:
+            return attrgetter(*names)
 
 
 def _symbols(pattern: core.Pat) -> list[core.Symbol]:
