@@ -118,7 +118,7 @@ def _places(x: _Reader) -> tuple[str, ...]:
 
 def _transitions(x: _Reader) -> tuple[str, ...]:
     if x.kind == "waits":
-        return ("End", f"See limit in Idle")
+        return ("End", "See limit in Idle")
     return ("Take", "Work") if x.is_told else ("Begin", "Work", "End")
 
 
@@ -164,7 +164,7 @@ def _supervisor(
     top: int,
     rounds: int,
 ) -> Iterator[str]:
-    changes = [f"in limit : n", f"out limit : if n > 1 then n - 1 else {top}"]
+    changes = ["in limit : n", f"out limit : if n > 1 then n - 1 else {top}"]
     sets_lamp = ["in lamp : b", "out lamp : not b"] if lamp else []
     early, late = (sets_lamp, []) if r.random() < 0.7 else ([], sets_lamp)
     tells = [x for n in told for x in (f"out go_{n} : ()", f"out Told_{n} : ()")]
