@@ -299,6 +299,11 @@ class Builder:
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
 
 
+def is_of_register(t: FlatTransition) -> bool:
+    """Whether a transition was added for a register, see `REGISTER`: nobody has drawn it."""
+    return t.id.startswith(REGISTER)
+
+
 def looks(t: FlatTransition) -> bool:
     """Whether a transition looks at a register, see `LOOK`."""
     return t.id.startswith(LOOK)

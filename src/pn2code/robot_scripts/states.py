@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 
 from pn2code.diagnostics import Note
-from pn2code.net.builder import REGISTER
+from pn2code.net.builder import is_of_register
 from pn2code.net.flat import FlatTransition
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts.conditions import all_hold
@@ -93,7 +93,7 @@ class States:
 
     def _warn_of_choices(self, situations: list[Situation]) -> None:
         # To look at a register before anything else is what its reader is to do (`registers`).
-        asked = [s for s in situations if not s.step.transition.id.startswith(REGISTER)]
+        asked = [s for s in situations if not is_of_register(s.step.transition)]
         for i, a in enumerate(asked):
             for b in asked[i + 1 :]:
                 # Conditions on different messages say nothing about each other.
