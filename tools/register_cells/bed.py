@@ -56,7 +56,7 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
     cell = random_cell(Random(seed))
     write(cell, folder)
     counts: Counter[str] = Counter(["cells"])
-    said = ask(folder, cell)
+    said = ask(folder, cell, () if runs and seed % RUN_EVERY == 0 else QUICK)
     with without_passes():
         loose = ask(folder, cell, QUICK)
     if isinstance(said, str) or isinstance(loose, str):
