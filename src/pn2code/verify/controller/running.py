@@ -20,7 +20,7 @@ taken. Added are flags of which others know nothing:
   after the other: who has the first one may act before the next is written.
 * A script that looks at a register (`registers`) asks for its message before anything else when it has come to a state.
   So it does anything else there only after a step *passes*, which finds no message. One that comes after this step may
-  be seen or not.
+  be seen or not. Where it waits, something that it does later has woken it, whose message is there when it asks.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
 * Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
