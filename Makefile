@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary rewritten geometry
+.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary registers rewritten geometry
 
 help:
 	@./dev help
@@ -48,5 +48,8 @@ rewritten:
 	./dev rewritten --cells 60
 
 # A thousand random cells: what `verify` proves of them must be true in runs of their programs.
+registers:
+	./dev registers --cells 300
+
 adversary:
 	./dev adversary --cells 1000

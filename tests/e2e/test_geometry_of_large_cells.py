@@ -94,7 +94,7 @@ def test_what_only_the_other_net_does_is_not_known(
 def test_where_the_other_net_is_too_large_as_well(tmp_path: Path) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=True)
     code, said = asked(cell, tmp_path / "runs", "--max-states", "5")
-    assert code == 3 and "unless `--max-states` says more" in said, said
+    assert code == 3 and "or as `--max-states` says" in said, said
 
 
 def test_a_sensor_that_sees_is_left_to_the_cell_itself(

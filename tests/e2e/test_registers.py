@@ -56,6 +56,14 @@ def test_who_is_told_to_look_sees_what_was_set_before(tmp_path: Path) -> None:
     assert {c["answer"] for c in (*said["controller"], *said["medium"])} == {"yes"}
 
 
+def test_messages_that_are_never_needed_are_no_note(tmp_path: Path) -> None:
+    """Nobody has drawn `Again` and `See again`, and nobody can do anything about them."""
+    cell = register_pairs.write(tmp_path / "cell", register_pairs.TOLD)
+    said = verified(cell)
+    assert any("See_again" in name for name in said["cell"]["dead_transitions"])
+    assert said["notes"] == []
+
+
 @pytest.mark.parametrize("realtime", [False, True])
 def test_a_run_is_one_of_the_net(realtime: bool, tmp_path: Path) -> None:
     cell = register_pairs.write(tmp_path / "cell", register_pairs.TOLD)

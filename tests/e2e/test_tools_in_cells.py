@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -10,8 +9,6 @@ from typer.testing import CliRunner
 
 from e2e.test_check_geometry import looked
 from helpers import carrying_cell
-from helpers.full_cell import merged, skeleton
-from helpers.netbuilder import cpn
 from helpers.situations_of import situations
 from helpers.tool_cell import TOML, asking, net, tool_cell
 from pn2code.cli.main import app
@@ -217,8 +214,8 @@ def recipe(folder: Path) -> Path:
     """The cell of docs/cookbook.md."""
     (found,) = [r for r in RECIPES if r.title == "A robot that changes its tool"]
     folder.mkdir()
-    (folder / "cell.cpn").write_bytes(cpn(found.net))
-    (folder / "cell.toml").write_text(merged(skeleton(), tomllib.loads(found.toml)))
+    found.net_in(folder)
+    (folder / "cell.toml").write_text(found.table())
     return folder
 
 

@@ -7,16 +7,22 @@ claim.broken(moments, is_over=True)         # the number of the first moment tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pn2code.semantics.game.marking import PlaceMarking
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A marking of a run: the numbers of tokens by the place's name, and what occurred just before ("": nothing)."""
+    """A marking of a run: the numbers of tokens by the place's name, and what occurred just before ("": nothing).
+
+    `held`: what the places hold, by name.
+    """
 
     tokens: dict[str, int]
     fired: str = ""
+    held: Mapping[str, PlaceMarking] = field(default_factory=dict)
 
 
 Run = Sequence[Moment]

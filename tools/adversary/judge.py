@@ -106,7 +106,7 @@ def markings(
     What a script announces just before it stops may be what no token can come of: that is no occurrence.
     """
     game = Game(net, storage, initial=initial)
-    found = [Moment(_tokens(game))]
+    found = [_moment(game)]
     names = {t.name: t for t in net.transitions}
     for line in run.record.events:
         if "transition" not in line:
@@ -131,12 +131,13 @@ def markings(
         except GameError as error:
             is_last = run.end != "finished" and line is run.record.events[-1]
             return found if is_last else f"{t.name}: {error}"
-        found.append(Moment(_tokens(game), t.name))
+        found.append(_moment(game, t.name))
     return found
 
 
-def _tokens(game: Game) -> dict[str, int]:
-    return {p.name: len(m) for p, m in zip(game.net.places, game.marking.places, strict=True)}
+def _moment(game: Game, fired: str = "") -> Moment:
+    held = {p.name: m for p, m in zip(game.net.places, game.marking.places, strict=True)}
+    return Moment({name: len(m) for name, m in held.items()}, fired, held)
 
 
 def contradictions(cell: Cell, said: Said, runs: Sequence[Run], built: Built) -> Iterator[str]:

@@ -26,6 +26,7 @@ from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
 from tools.reduction_cells.peers import peers
+from tools.reduction_cells.registers import registers
 from tools.reduction_cells.shops import shop
 from tools.reduction_cells.stations import stations
 from tools.reduction_cells.talks import talks
@@ -59,6 +60,7 @@ MADE: Mapping[str, Callable[[Random], tuple[str, str]]] = {
     "peers": peers,
     "stations": stations,
     "talks": talks,
+    "registers": registers,
 }
 
 

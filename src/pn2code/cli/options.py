@@ -88,7 +88,7 @@ MaxStatesOption = Annotated[
     typer.Option(
         metavar="N",
         min=1,
-        help="Look at N states of the cell at most.  (default: 300,000; never more than 3,000,000)",
+        help="Look at N states of the cell at most.  (default: as many as memory holds; never more than 3,000,000)",
     ),
 ]
 """Of verbs that go through the states of a cell one by one."""

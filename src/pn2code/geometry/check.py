@@ -21,7 +21,7 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
-from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider
+from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_held
 from pn2code.geometry.large import MOST_OF_PART, answer_of
 from pn2code.geometry.look import Look, Options
 from pn2code.geometry.words import reason
@@ -104,7 +104,15 @@ def examine(
         if graph.why in ("states", "memory"):
             stage("exploring a net that does more and has fewer states ...")
             wider = explore_wider(partition, opened.storage, limits, Diagnostics())
-        if wider is None or not wider.arcs:
+        is_open = wider is None or not wider.arcs
+        if is_open and graph.why == "states" and limits.max_states is None:
+            most = most_held()
+            stage(f"exploring {most:,} states of the cell ...")
+            graph = explore_cell(partition, opened.storage, limits, d, opened.initial, most=most)
+            if graph is None:
+                return None
+            wider = None
+        if is_open and not graph.arcs:
             return Geometry((), reason(graph.why))
 
     def part(order: Order) -> CellGraph | None:

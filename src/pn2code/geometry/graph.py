@@ -39,14 +39,16 @@ from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
 from pn2code.verify.controller.stops import machine
 from pn2code.verify.exploring.explore import ExploreOptions, explore
-from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.limits import Limits, Reduction, default_memory
 from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Generated, Sizes
 
 MOST_STATES = MOST_WRITTEN
-"""States of a cell that are looked at if nobody wants more ..."""
+"""States of a cell that are looked at before it is tried otherwise, see `most_held` ..."""
 MOST_HELD = 3_000_000
-"""... and never more than these: each takes about a kilobyte."""
+"""... and never more than these ..."""
+_KIB = 2
+"""... of which each takes about half of that."""
 CLOCK = -1
 """The owner of steps of the clock."""
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
@@ -204,11 +206,12 @@ class CellGraph:
 def explore_cell(
     partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
     initial: str | None = None, program: CellProgram | None = None, *, part: bool = False,
+    most: int | None = None,
 ) -> CellGraph | None:  # fmt: skip
     """Explores the cell as it runs; None after an error that was reported.
 
     `program` is what somebody has compiled of the same cell. `part`: of a cell that was not seen to its end a part is
-    wanted; else nothing is, but why.
+    wanted; else nothing is, but why. `most`: states, where `limits` do not say it; else `MOST_STATES`.
 
     Raises:
         NotModelledError: it cannot be said what its programs do.
@@ -217,13 +220,14 @@ def explore_cell(
         program = CellProgram(Running.of(partition), (), Generated())
     running, made = program.running, program.generated
     written = program.graph
-    if written is not None and written.nodes <= (limits.max_states or MOST_STATES):
+    most = min(limits.max_states or most or MOST_STATES, MOST_HELD)
+    if written is not None and written.nodes <= most:
         graph = _read(partition, storage, running, _rows(written.file), "")
         if (len(graph.arcs), sum(map(len, graph.arcs))) == (written.nodes, written.arcs):
             return graph
     limits = replace(
         limits,
-        max_states=min(limits.max_states or MOST_STATES, MOST_HELD),
+        max_states=most,
         graph=True,
         approximation=None,
         traces=0,
@@ -253,6 +257,11 @@ def explore_cell(
         if not why and seen != (found.nodes, found.arcs):
             graph.why = "file"
         return graph
+
+
+def most_held() -> int:
+    """States of a cell for which there is memory."""
+    return max(MOST_STATES, min(MOST_HELD, default_memory() * 1024 // _KIB))
 
 
 def explore_wider(

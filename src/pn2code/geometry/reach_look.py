@@ -17,7 +17,7 @@ from pn2code.geometry import codes
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.answers import STOPPED
 from pn2code.geometry.check import cell_of, cells_of
-from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell, most_held
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.reach_map import Map, Task, grid, reach_map
 from pn2code.geometry.situations import Situations
@@ -114,7 +114,7 @@ def told(
     """The graph of the cell, in which all that arms are told is; None: it is not known, which was reported."""
     stage("exploring the cell as its programs run ...")
     try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial, most=most_held())
     except NotModelledError as problem:
         d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {problem}", _at(config))
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from pn2code.geometry.graph import MOST_STATES
+from pn2code.geometry.graph import MOST_HELD
 from pn2code.robot.commands import (
     Along,
     Command,
@@ -26,8 +26,9 @@ from pn2code.robot.parts import Part
 from pn2code.verify.answers.reasons import clause
 
 _OPEN = {
-    "states": f"the cell has more states than were looked at, {MOST_STATES:,} unless `--max-states` says more: fewer "
-    "parts or rounds make it smaller (a `val` of the net with `--set`), and so do colour sets with fewer values",
+    "states": "the cell has more states than were looked at, as many as there is memory for and at most "
+    f"{MOST_HELD:,}, or as `--max-states` says: fewer parts or rounds make it smaller (a `val` of the net with "
+    "`--set`), and so do colour sets with fewer values",
     "seconds": "the time was over before all states of the cell were seen",
     "memory": "the memory was full before all states of the cell were seen",
     "interrupted": "it was interrupted before all states of the cell were seen",

@@ -22,7 +22,7 @@ from pn2code.timing.longest import Arc, Way, Ways, longest_inside, shortest
 from pn2code.timing.steps import Kind, kinds, stops
 
 MOST = 600_000
-"""States with places of the arms that are looked at."""
+"""States with places of the arms that are looked at, or twice as many as the cell has states if that is more."""
 Node = tuple[int, tuple[Stand, ...]]
 
 
@@ -53,13 +53,14 @@ class Anyhow:
 
     def explore(self, more: Callable[[], None] = lambda: None) -> None:
         """Goes through all of them; `more` hears of each."""
+        most = max(MOST, 2 * len(self.graph.arcs))
         todo = deque([self._number((0, self.doings.homes))])
         while todo:
             node = todo.popleft()
             more()
             before = len(self.nodes)
             self.successors[node] = list(self._after(node))
-            if len(self.nodes) > MOST:
+            if len(self.nodes) > most:
                 self.why = self.why or "situations"
                 return
             todo += range(before, len(self.nodes))

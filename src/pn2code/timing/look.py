@@ -18,7 +18,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry.check import cells_of
-from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell, most_held
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.words import numbers, reason, words
@@ -118,7 +118,9 @@ def look(
     timeout = config.supervisor.reply_timeout_s
     stage("exploring the cell as its programs run ...")
     try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial, program)
+        graph = explore_cell(
+            partition, opened.storage, limits, d, opened.initial, program, most=most_held()
+        )
     except NotModelledError as problem:
         return Times((), timeout, f"the cell as it runs cannot be modelled: {problem}")
     if graph is None:

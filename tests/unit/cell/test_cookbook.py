@@ -1,4 +1,4 @@
-"""docs/cookbook.md: each net is explored by the token game, and ends as it says; each table is read."""
+"""docs/cookbook.md: each net is read as it is printed, and ends as it says; each table is read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import jsonschema
 import pytest
 
 from helpers.full_cell import merged, skeleton
-from helpers.netbuilder import write
 from pn2code.cell.load import load
 from pn2code.cell_file import json_schema
 from pn2code.diagnostics import Diagnostics, render
@@ -38,20 +37,32 @@ class Recipe:
     toml: str
     ends: tuple[str, ...]
 
+    @property
+    def is_cell(self) -> bool:
+        return bool(self.net) and "[supervisor]" in self.toml
+
+    def net_in(self, folder: Path) -> Path:
+        """The net as it is printed, in a file."""
+        path = folder / "cell.cpnt"
+        path.write_text(self.net, encoding="utf-8")
+        return path
+
+    def table(self) -> str:
+        """The cell.toml, with what recipes leave out."""
+        return merged({**skeleton(), "net": {"file": "cell.cpnt"}}, tomllib.loads(self.toml))
+
 
 def recipes() -> list[Recipe]:
     found = []
     for part in re.split(r"^## \d+\. ", BOOK.read_text(), flags=re.MULTILINE)[1:]:
-        net = re.search(r"^```net\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
+        net = re.search(r"^```cpnt\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
         toml = re.search(r"^```toml\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
         ends = re.search(r"^Ends in (.*)\.$", part, re.MULTILINE)
         assert bool(net) == bool(ends), part
         found.append(
             Recipe(
                 part.splitlines()[0],
-                "net Recipe\n  standard\n" + "".join(f"  {x}\n" for x in net[1].splitlines())
-                if net
-                else "",
+                net[1] if net else "",
                 toml[1] if toml else "",
                 tuple(re.findall(r"`(\w+)`", ends[1])) if ends else (),
             )
@@ -64,13 +75,14 @@ RECIPES = recipes()
 
 def test_there_are_enough() -> None:
     assert len(RECIPES) >= 20
+    assert not re.search(r"^```net$", BOOK.read_text(), re.MULTILINE)
     assert sum(bool(r.net) for r in RECIPES) >= 12 and sum(bool(r.toml) for r in RECIPES) >= 10
 
 
 @pytest.mark.parametrize("recipe", [r for r in RECIPES if r.net], ids=lambda r: r.title)
 def test_the_net_ends_as_it_says(recipe: Recipe, tmp_path: Path) -> None:
     d = Diagnostics()
-    net = load_net(write(recipe.net, tmp_path / "cell.cpn"), d, compute=compute)
+    net = load_net(recipe.net_in(tmp_path), d, compute=compute)
     assert net is not None and not d.items, render.report(d)
     space = state_space(Game(net), max_nodes=MOST)
     assert space.complete
@@ -85,7 +97,7 @@ def test_the_net_ends_as_it_says(recipe: Recipe, tmp_path: Path) -> None:
 @pytest.mark.parametrize("recipe", [r for r in RECIPES if r.toml], ids=lambda r: r.title)
 def test_the_table_is_read(recipe: Recipe, tmp_path: Path) -> None:
     """With the net it is a cell; without, what it names need not be there."""
-    text = merged(skeleton(), tomllib.loads(recipe.toml))
+    text = recipe.table()
     (tmp_path / "cell.toml").write_text(text)
     assert not [
         *jsonschema.Draft202012Validator(json_schema.schema()).iter_errors(tomllib.loads(text))
@@ -97,7 +109,7 @@ def test_the_table_is_read(recipe: Recipe, tmp_path: Path) -> None:
     properties = from_cell(config, d)
     assert not d.items, render.report(d)
     if recipe.net:
-        examined = examine(write(recipe.net, tmp_path / "cell.cpn"), d, compute=compute)
+        examined = examine(recipe.net_in(tmp_path), d, compute=compute)
         net = examined.flat
         assert net is not None and examined.typed is not None
         if config.channels:

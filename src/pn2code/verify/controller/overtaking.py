@@ -2,8 +2,10 @@
 
 A script that waits for several messages takes, when it is woken, the first transition in its order that is possible. In
 the cell as it runs (`running`) a later one may occur although an earlier one is possible as well (`Running.meek`): the
-message of the earlier one may have come after the script had looked for it. That is so only if the later one was
-possible at a time when the earlier one was not, since the script last did something.
+message of the earlier one may have come after the script had looked for it. That is so only if, since the script last
+did something, the later one was possible at a time when the earlier one was not; or if a third one was, which comes
+after both and has woken the script: it has asked for the earlier one then, and the messages of both have come before it
+asks for the later one.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from pn2code.net.flat import FlatTransition
+from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game, GameError
@@ -60,6 +62,7 @@ def _played(
         files=Files(None),
     )
     owners = running.partition.transition_owner
+    wakers = _wakers(running, earlier)
     since: dict[int, list[Marking]] = {owner: [] for owner in set(owners)}
     for number, step in enumerate(opened.steps(), 1):
         if number > MOST_STEPS:
@@ -69,7 +72,8 @@ def _played(
         t = step.transition.index
         if t < len(owners):
             seen = [*since[owners[t]], game.marking]
-            if not _may_come_first(game, step.transition, earlier.get(t, ()), seen):
+            rivals, others = earlier.get(t, ()), wakers.get(t, ())
+            if not _may_come_first(game, step.transition, rivals, others, seen):
                 return False
         game.fire(BindingElement.make(step.transition, step.bound), checked=False)
         for owner, markings in since.items():
@@ -98,14 +102,54 @@ def _earlier(running: Running) -> dict[int, list[FlatTransition]]:
     }
 
 
+def _wakers(
+    running: Running, earlier: Mapping[int, Sequence[FlatTransition]]
+) -> dict[int, list[FlatTransition]]:
+    """By transition with rivals those that compete with it and come later."""
+    net, owners = running.partition.net, running.partition.transition_owner
+    channels = {c.place for c in running.partition.channels}
+
+    def own(t: FlatTransition) -> set[int]:
+        return {a.place for a in t.arcs if a.kind is ArcKind.INPUT} - channels
+
+    return {
+        i: [
+            running.net.transitions[u.index]
+            for u in net.transitions
+            if owners[u.index] == owners[i]
+            and (u.priority, u.index) > (net.transitions[i].priority, i)
+            and own(u) & own(net.transitions[i])
+        ]
+        for i in earlier
+    }
+
+
 def _may_come_first(
-    game: Game, t: FlatTransition, rivals: Sequence[FlatTransition], seen: Sequence[Marking]
+    game: Game,
+    t: FlatTransition,
+    rivals: Sequence[FlatTransition],
+    others: Sequence[FlatTransition],
+    seen: Sequence[Marking],
 ) -> bool:
-    """Whether a transition can have been taken before each rival that is possible in the last marking as well."""
-    return all(
+    """Whether a transition can have been taken before each rival that is possible in the last marking as well.
+
+    Args:
+        game: of the cell as it runs.
+        t: the transition.
+        rivals: those that come before it.
+        others: those that come after it.
+        seen: the markings since the script last did something.
+    """
+    possible = [r for r in rivals if _is_possible(game, r, seen[-1])]
+    if all(
         any(_is_possible(game, t, m) and not _is_possible(game, r, m) for m in seen)
-        for r in rivals
-        if _is_possible(game, r, seen[-1])
+        for r in possible
+    ):
+        return True
+    return any(
+        any(_is_possible(game, u, m) for u in others)
+        and not any(_is_possible(game, r, m) for r in possible)
+        for m in seen
     )
 
 

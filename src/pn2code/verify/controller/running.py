@@ -20,7 +20,7 @@ taken. Added are flags of which others know nothing:
   after the other: who has the first one may act before the next is written.
 * A script that looks at a register (`registers`) asks for its message before anything else when it has come to a state.
   So it does anything else there only after a step *passes*, which finds no message. One that comes after this step may
-  be seen or not.
+  be seen or not. Where it waits, something that it does later has woken it, whose message is there when it asks.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
 * Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
@@ -47,7 +47,7 @@ from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import SUPERVISOR, Channel, ChannelKind, Partition
 from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
-from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition, Role
+from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition, Form, Role
 from pn2code.net.predicate import Predicate
 from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
@@ -432,15 +432,17 @@ class _Composer:
     def _passed(self) -> Iterator[tuple[int, int]]:
         """By transition that looks at a register: a place that is marked once its script has found no message.
 
-        Where the control token waits for time, a script may be seen to do so: there nothing is said.
+        Where something takes a control token before its time, the script has asked before that as well: there nothing
+        is said.
         """
         for owner, program in self.machines.items():
-            for step in program.steps:
-                places = [p for p, *_ in step.takes]
-                is_timed = any(self.b.places[p].colset.timed for p in places)
-                if step.transition.role is Role.LOOK and not is_timed:
-                    name = f"{self.partition.owners[owner].name}.{step.transition.short}"
-                    yield step.transition.index, self.b.place(f"cell.{name}.passed", self.b.unit)
+            for control in program.control:
+                steps = program.steps_from(control)
+                if any(_takes_early(s.transition, control) for s in steps):
+                    continue
+                for t in (s.transition for s in steps if s.transition.role is Role.LOOK):
+                    name = f"{self.partition.owners[owner].name}.{t.short}"
+                    yield t.index, self.b.place(f"cell.{name}.passed", self.b.unit)
 
     def _looks_from(self, owner: int, control: int) -> list[tuple[FlatTransition, int]]:
         """The transitions that look at registers in a state, each with the place that says that it has no message."""
@@ -462,14 +464,33 @@ class _Composer:
                     yield self._off(passed) if is_later else self.b.empties(passed)
 
     def _passing(self, owner: int) -> None:
-        """A script that has come to a state in which it looks at a register finds no message there."""
+        """A script that has come to a state in which it looks at a register finds no message there.
+
+        Where it waits it has been woken by a message of something that it does later in order, and asks for that of the
+        register when this one is there.
+        """
         for control in self.machines[owner].control:
             for look, passed in self._looks_from(owner, control):
                 (message,) = (p for p in self._taken(look) if p in self.out)
                 arcs = [self._any(control), self._is_missing(message), self.b.absent(passed)]
                 name = f"{self.partition.owners[owner].name} passes {look.short}"
                 arcs += [self._on(passed), *self._goes_on()]
-                self._step(owner, name, look.priority, *arcs)
+                for woken in self._wakers(owner, control, look):
+                    there = [x for p in woken for x in (self._any(p), *self._is_there(p))]
+                    self._step(owner, name, look.priority, *arcs, *there)
+
+    def _wakers(self, owner: int, control: int, look: FlatTransition) -> list[tuple[int, ...]]:
+        """The messages of which those of one row are there when a script does something else than to look.
+
+        One row without a message where something else needs none: whether a script waits its own data decide then.
+        """
+        program = self.machines[owner]
+        rows = {
+            tuple(sorted(p for p, *_ in s.takes if p in program.channels))
+            for s in program.steps_from(control)
+            if (s.transition.priority, s.transition.index) > (look.priority, look.index)
+        }
+        return [()] if () in rows else sorted(rows)
 
     @staticmethod
     def _taken(t: FlatTransition) -> list[int]:
@@ -710,6 +731,17 @@ def _acts_early(partition: Partition, put: set[int]) -> bool:
         if taken and not taken.issuperset(order[min(map(order.index, taken)) :]):
             return True
     return False
+
+
+def _takes_early(t: FlatTransition, place: int) -> bool:
+    """Whether a transition takes a token of the place before its time."""
+    return any(
+        a.place == place
+        and a.inscription is not None
+        and a.inscription.form in (Form.TIMED_TOKEN, Form.TIMED_MULTISET)
+        for a in t.arcs
+        if a.kind is not ArcKind.OUTPUT
+    )
 
 
 def meek(partition: Partition) -> Iterator[int]:

@@ -6,9 +6,11 @@ never(net, found, control)      # Never("the cell", ("Sup'Extra 1",))
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, Role
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.result import Exploration
 
@@ -43,14 +45,21 @@ class Never:
 
 
 def never(net: FlatNet, found: Exploration, control: Control | None) -> Never | None:
-    """Those of the cell as it runs, if all of it was seen, else of the net; None: nobody knows."""
+    """Those of the cell as it runs, if all of it was seen, else of the net; None: nobody knows.
+
+    What was added for registers, and nobody has drawn, is left out.
+    """
     names = EngineNames(net)
+
+    def drawn(which: Iterable[int]) -> tuple[str, ...]:
+        return tuple(names.transition(i) for i in which if net.transitions[i].role is Role.OWN)
+
     own = control.dead if control is not None else None
     if own is not None:
-        return Never("the cell", tuple(map(names.transition, own)))
+        return Never("the cell", drawn(own))
     where = "the net" if control is None else "the closed net"
     if found.known is not None:
-        return Never(where, tuple(map(names.transition, found.known.never)))
+        return Never(where, drawn(found.known.never))
     if not found.seen.markings or not found.knows_dead_transitions:
         return None
-    return Never(where, tuple(map(names.transition, found.dead_transitions())))
+    return Never(where, drawn(found.dead_transitions()))
