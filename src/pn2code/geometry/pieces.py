@@ -30,7 +30,7 @@ KEPT = 0.2
 """m: links that are further apart in a piece are not looked at in its parts."""
 
 
-class Way(Protocol):
+class Swept(Protocol):
     """A leg, or what stands."""
 
     radii: Array
@@ -49,7 +49,7 @@ class Front:
     """What is still to be looked at.
 
     Args:
-        pieces: from where to where on each way, (n, 4).
+        pieces: from where to where on the way of each, (n, 4).
         row: of which piece, ascending; one, other: which links of both; (m,) each.
     """
 
@@ -59,7 +59,7 @@ class Front:
     other: Numbers
 
     @staticmethod
-    def whole(a: Way, b: Way) -> Front:
+    def whole(a: Swept, b: Swept) -> Front:
         """Both ways from their beginning to their end."""
         one, other = np.indices((len(a.radii), len(b.radii))).reshape(2, -1)
         return Front(np.array([[0.0, 1.0, 0.0, 1.0]]), np.zeros(len(one), int), one, other)
@@ -95,7 +95,7 @@ class Level:
         is_first: whether the first leg goes further in it.
     """
 
-    def __init__(self, front: Front, a: Way, b: Way) -> None:
+    def __init__(self, front: Front, a: Swept, b: Swept) -> None:
         pieces, row = front.pieces, front.row
         self.first, self.first_at = _unique(a, pieces[:, 0], pieces[:, 1])
         self.second, self.second_at = _unique(b, pieces[:, 2], pieces[:, 3])
@@ -125,7 +125,7 @@ class Level:
         """Where both are in the middle of a piece."""
         return self.first.q[self.first_at[piece]], self.second.q[self.second_at[piece]]
 
-    def gaps(self, pieces: Numbers, a: Way, b: Way) -> Array:
+    def gaps(self, pieces: Numbers, a: Swept, b: Swept) -> Array:
         """Between the capsules of all links, in the middle of some pieces, (n, links, links)."""
         one, two = self.first.pick(self.first_at[pieces]), self.second.pick(self.second_at[pieces])
         return gaps(one, a.radii, two, b.radii)
@@ -135,10 +135,10 @@ class Level:
         return self.first.spread[self.first_at[piece]], self.second.spread[self.second_at[piece]]
 
 
-def _unique(way: Way, a: Array, b: Array) -> tuple[Knots, Numbers]:
+def _unique(swept: Swept, a: Array, b: Array) -> tuple[Knots, Numbers]:
     """The knots of pieces, each worked out once, and which is which."""
     pairs, index = np.unique(a + 1j * b, return_inverse=True)
-    return way.knots(pairs.real, pairs.imag), np.asarray(index).reshape(-1)
+    return swept.knots(pairs.real, pairs.imag), np.asarray(index).reshape(-1)
 
 
 def gaps(one: Knots, radii: Array, two: Knots, others: Array) -> Array:

@@ -30,8 +30,8 @@ from pn2code.robot_scripts.values import (
 )
 from pn2code.tdl import tree as t
 
-Way = Callable[[Iterable[tuple[core.Exp, bool]], Env], tuple[Path | None, list[Owed]]]
-"""Where an inscription turns out in some way, None: never."""
+PathTo = Callable[[Iterable[tuple[core.Exp, bool]], Env], tuple[Path | None, list[Owed]]]
+"""On which path an inscription has an outcome with these conditions; None: on none."""
 
 
 def stops(
@@ -40,7 +40,7 @@ def stops(
     situation: Situation,
     env: Env,
     known_where: Callable[[Iterable[t.Expression]], Known],
-    way: Way,
+    path_to: PathTo,
 ) -> list[Node]:
     """A stop for each token that a transition puts, unless it is known to be in the colour set of its place.
 
@@ -50,7 +50,7 @@ def stops(
         situation: the transition.
         env: its variables, with the outputs of its code segment.
         known_where: what is known of numbers where some conditions hold.
-        way: of an inscription.
+        path_to: of an inscription.
     """
     transition = situation.step.transition
     # What a code segment gives may be outside the colour set of its variable, as in CPN Tools.
@@ -66,7 +66,7 @@ def stops(
         outcomes = delayed_tokens(inscription.value, inscription.form, machine.net.program)
         for conditions, values, _ in outcomes:
             try:
-                path, _ = way(conditions, env)
+                path, _ = path_to(conditions, env)
                 if path is None:
                     continue
                 there = known

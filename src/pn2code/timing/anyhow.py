@@ -18,7 +18,7 @@ from collections.abc import Callable
 
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, Doings
-from pn2code.timing.longest import Arc, Way, Ways, longest_inside, shortest
+from pn2code.timing.longest import Arc, TimedPath, TimedPaths, longest_inside, shortest
 from pn2code.timing.steps import Kind, kinds, stops
 
 MOST = 600_000
@@ -151,7 +151,7 @@ class Anyhow:
         ends = self.ends()
         if not all(arcs or i in ends for i, arcs in enumerate(self.successors)):
             return False
-        return not Ways(self.successors, ends).never_end()
+        return not TimedPaths(self.successors, ends).never_end()
 
     def inside(self, place: int) -> int | None:
         """ns: for how long a place of the cell's model can be marked at most, if no command takes more than its time.
@@ -164,10 +164,10 @@ class Anyhow:
             return None
         return longest_inside(self.successors, nodes)
 
-    def most(self) -> tuple[Way | None, list[int]]:
+    def most(self) -> tuple[TimedPath | None, list[int]]:
         """The way on which most is done, and, where there is none, the elements of a repetition that takes time."""
-        ways = Ways(self.successors, self.ends())
-        return ways.longest(), [self._arc(a, b) for a, b in _pairs(ways.cycle)]
+        paths = TimedPaths(self.successors, self.ends())
+        return paths.longest(), [self._arc(a, b) for a, b in _pairs(paths.cycle)]
 
     def _arc(self, node: int, target: int) -> int:
         arcs = [(ns, mark) for to, ns, mark in self.successors[node] if to == target]

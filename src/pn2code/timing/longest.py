@@ -1,8 +1,8 @@
-"""Shortest and longest ways in a graph with times on its arcs, to where something ends.
+"""Shortest and longest paths in a graph with times on its arcs, to where something ends.
 
-    ways = Ways(successors, ends)
-    ways.longest()          # Longest(ns=58_120_000_000, way=[(0, 3), ...]); None: there is no way
-    ways.cycle              # nodes of a cycle that takes time, from which an end can be reached: no way is longest
+    paths = TimedPaths(successors, ends)
+    paths.longest()          # TimedPath(ns=58_120_000_000, arcs=[(0, 3), ...]); None: there is no way
+    paths.cycle              # nodes of a cycle that takes time, from which an end can be reached: no way is longest
 
 `successors[n]` are (node, ns, mark) of node `n`; node 0 is the start. What takes no time may go round.
 """
@@ -20,23 +20,23 @@ Arc = tuple[int, int, int]
 
 
 @frozen
-class Way:
+class TimedPath:
     """A way from the start: how long it is, and the node and mark of each of its arcs."""
 
     ns: int
-    way: tuple[tuple[int, int], ...]
+    arcs: tuple[tuple[int, int], ...]
 
     @property
     def last(self) -> int:
         """Where it ends."""
-        return self.way[-1][0] if self.way else 0
+        return self.arcs[-1][0] if self.arcs else 0
 
 
 def shortest(
     successors: Sequence[Sequence[Arc]],
     ends: Collection[int],
     weigh: Callable[[int, int], int] = lambda ns, _mark: ns,
-) -> Way | None:
+) -> TimedPath | None:
     """The shortest way to an end; None: there is none.
 
     Args:
@@ -50,7 +50,7 @@ def shortest(
         if ns > best[node]:
             continue
         if node in ends:
-            return Way(ns, tuple(_back(before, node)))
+            return TimedPath(ns, tuple(_back(before, node)))
         for target, more, mark in successors[node]:
             total = ns + weigh(more, mark)
             if total < best.get(target, total + 1):
@@ -60,8 +60,8 @@ def shortest(
     return None
 
 
-class Ways:
-    """The ways to the ends, as long as they can be."""
+class TimedPaths:
+    """The paths to the ends, as long as they can be."""
 
     def __init__(self, successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> None:
         self.successors, self.ends = successors, ends
@@ -84,7 +84,7 @@ class Ways:
             node in self._after(node) for node in range(len(self.successors))
         )
 
-    def longest(self, ends: Collection[int] | None = None) -> Way | None:
+    def longest(self, ends: Collection[int] | None = None) -> TimedPath | None:
         """The longest way; None: there is none, or, with a cycle, no longest one.
 
         Args:
@@ -111,7 +111,7 @@ class Ways:
         if not there:
             return None
         end = max(there, key=lambda n: best[self._component[n]])
-        return Way(best[self._component[end]], tuple(self._way(entry, end)))
+        return TimedPath(best[self._component[end]], tuple(self._way(entry, end)))
 
     def _way(self, entry: dict[int, tuple[int, int, int]], end: int) -> list[tuple[int, int]]:
         out: list[tuple[int, int]] = []
@@ -174,9 +174,9 @@ def longest_inside(successors: Sequence[Sequence[Arc]], inside: Collection[int])
         arcs = [(numbers.get(target, left), ns, 0) for target, ns, _ in successors[node]]
         graph.append([*arcs, (left, 0, 0)])
     graph.append([])
-    ways = Ways(graph, {left})
-    found = ways.longest()
-    return None if ways.cycle or found is None else found.ns
+    paths = TimedPaths(graph, {left})
+    found = paths.longest()
+    return None if paths.cycle or found is None else found.ns
 
 
 def _back(before: dict[int, tuple[int, int]], node: int) -> list[tuple[int, int]]:

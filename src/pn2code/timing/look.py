@@ -28,7 +28,7 @@ from pn2code.timing import codes
 from pn2code.timing.answers import Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
-from pn2code.timing.longest import Way, longest_inside
+from pn2code.timing.longest import TimedPath, longest_inside
 from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
@@ -258,7 +258,7 @@ class _Look:
                 None if worst is None else worst.ns,
                 self._run(best if is_known else None, f"fastest{short}"),
                 self._run(worst, f"slowest{short}"),
-                0 if worst is None else search.held_up(0, worst.way),
+                0 if worst is None else search.held_up(0, worst.arcs),
             )
 
     def _others(self, late: Sequence[str]) -> Iterator[str]:
@@ -369,7 +369,7 @@ class _Look:
                 f"({timeout:g} s) allows"
             )
 
-    def _run(self, way: Way | None, which: str) -> Run | None:
+    def _run(self, way: TimedPath | None, which: str) -> Run | None:
         if way is None or self.folder is None:
             return None
         stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", self.opened.flat.name) or "net"

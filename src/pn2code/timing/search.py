@@ -2,7 +2,7 @@
 
     search = Search(doings)
     search.explore()
-    search.endings["Top.Supervisor.Finished"].best      # Way; ...worst: None: there is no longest one
+    search.endings["Top.Supervisor.Finished"].best      # TimedPath; ...worst: None: there is no longest one
     search.why                          # why not all runs are known; "": they are
 
 A situation is a state of the cell, where its arms stand, and what is under way with the time that it still takes. At
@@ -27,7 +27,7 @@ from pn2code.base.frozen import record
 from pn2code.geometry.graph import CLOCK
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, NS, Doing, Doings
-from pn2code.timing.longest import Arc, Way, Ways
+from pn2code.timing.longest import Arc, TimedPath, TimedPaths
 from pn2code.timing.steps import Kind, kinds, stops
 
 TIE = 1_000_000
@@ -52,12 +52,12 @@ class Ending:
     """One way for a cycle to end: in these final places.
 
     Args:
-        nodes: the situations; best, worst: ways to them. None: not known, or there is no worst.
+        nodes: the situations; best, worst: paths to them. None: not known, or there is no worst.
     """
 
     nodes: list[int] = field(default_factory=list)
-    best: Way | None = None
-    worst: Way | None = None
+    best: TimedPath | None = None
+    worst: TimedPath | None = None
 
 
 class Search:
@@ -124,11 +124,11 @@ class Search:
                 self.why = self.why or "situations"
                 return
         self.why = self.why or self.doings.why or ("belt" if self.doings.stops else "")
-        ways = Ways(self.successors, self.ends)
-        self.cycle = ways.cycle
+        paths = TimedPaths(self.successors, self.ends)
+        self.cycle = paths.cycle
         for ending in self.endings.values():
-            ending.worst = ways.longest(ending.nodes)
-        self.is_endless = ways.never_end()
+            ending.worst = paths.longest(ending.nodes)
+        self.is_endless = paths.never_end()
 
     def _note_end(self, node: int, now: int) -> None:
         state = self.situations[node][0]
@@ -138,7 +138,7 @@ class Search:
         ending = self.endings.setdefault(", ".join(places[p].name for p in finals), Ending())
         ending.nodes.append(node)
         if ending.best is None:
-            ending.best = Way(now, tuple(self.way(node)))
+            ending.best = TimedPath(now, tuple(self.way(node)))
 
     def way(self, node: int) -> list[tuple[int, int]]:
         """The first way to a situation: node and mark of each arc."""
@@ -171,9 +171,9 @@ class Search:
             out.append(max(marks))
         return [m for m in out if m >= 0]
 
-    def elements(self, way: Way) -> list[int]:
-        """What occurs on a way."""
-        return [mark for _, mark in way.way if mark >= 0]
+    def elements(self, path: TimedPath) -> list[int]:
+        """What occurs on a path."""
+        return [mark for _, mark in path.arcs if mark >= 0]
 
     # --- one situation ---------------------------------------------------------------------------
 

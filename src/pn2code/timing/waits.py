@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 
 from pn2code.base.frozen import frozen
-from pn2code.timing.longest import Arc, Ways
+from pn2code.timing.longest import Arc, TimedPaths
 
 Is = Callable[[int], bool]
 
@@ -71,7 +71,7 @@ def longest_wait(
             ]
         )
     graph.append([])
-    ways = Ways(graph, {last})
+    paths = TimedPaths(graph, {last})
 
     def told(way: Sequence[tuple[int, int]], why: str, ns: int | None = None) -> Wait:
         node = inside[way[0][0] - 1]
@@ -79,22 +79,22 @@ def longest_wait(
         after = [(-1 if n == last else inside[n - 1], m) for n, m in way[1:]]
         return Wait(ns, why, before, ((node, mark), *after))
 
-    never = [i for i in range(1, last) if not ways.leading[i]]
+    never = [i for i in range(1, last) if not paths.leading[i]]
     lost = next((i for i in never if inside[i - 1] not in over), 0)
     if lost:
         return told(_way(graph, {lost}), "never")
     if never:
         return Wait(None, "ends")
-    if ways.cycle:
-        there = _way(graph, {ways.cycle[0]})
-        return told([*there, *_round(graph, ways.cycle)], "repeats")
-    found = ways.longest()
+    if paths.cycle:
+        there = _way(graph, {paths.cycle[0]})
+        return told([*there, *_round(graph, paths.cycle)], "repeats")
+    found = paths.longest()
     assert found is not None
-    if ways.never_end():
+    if paths.never_end():
         return Wait(None, "idle")
     if any(node in ends for node in inside):
         return Wait(None, "ends")
-    return told(found.way, "", found.ns)
+    return told(found.arcs, "", found.ns)
 
 
 def _until(

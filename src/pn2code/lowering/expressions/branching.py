@@ -24,7 +24,7 @@ _UNIT = UNIT_VALUE
 
 
 @frozen
-class Ways:
+class Outcomes:
     """What becomes of rules: `finish` of the body of the one that fits; `give_up` after an exception where
     none does."""
 
@@ -139,7 +139,7 @@ class Branching(Block):
         return None
 
     def _simple_if(self, e: core.If, env: Env) -> Ir | None:
-        """As a C expression, if both ways are simple."""
+        """As a C expression, if both outcomes are simple."""
         if not (is_simple(e.then) and is_simple(e.otherwise)):
             return None
         condition = self.ir(e.condition, env)
@@ -216,21 +216,21 @@ class Branching(Block):
         self._chain(rules, value, env, exception, self._filling(target))
         return _UNIT if target is None else ir.Use(target)
 
-    def _filling(self, target: Local | None) -> Ways:
+    def _filling(self, target: Local | None) -> Outcomes:
         """Each rule's value goes into a local."""
 
         def give_up() -> None:
             if target is not None:
                 self.emit(ir.Assign(target, self.zero(target.type)))
 
-        return Ways(lambda body, env: self.into(body, env, target), give_up)
+        return Outcomes(lambda body, env: self.into(body, env, target), give_up)
 
     def _chain(
-        self, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, ways: Ways
+        self, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, outcomes: Outcomes
     ) -> None:
         """Rules tried one after the other."""
         value = self.store_in_locals(value, "value")
-        self._rule(0, rules, value, env, exception, ways)
+        self._rule(0, rules, value, env, exception, outcomes)
 
     def _rule(
         self,
@@ -239,11 +239,11 @@ class Branching(Block):
         value: Val,
         env: Env,
         exception: str,
-        ways: Ways,
+        outcomes: Outcomes,
     ) -> None:
         if index == len(rules):
             self.emit(ir.Raise(exception))
-            ways.give_up()
+            outcomes.give_up()
             return
         rule = rules[index]
         match = self._matcher.match(rule.pattern, value)
@@ -253,18 +253,18 @@ class Branching(Block):
         if is_last and condition is not None and self._is_recursive(value):
             # It does: after an error there may be no argument behind the pointer.
             with self.block() as then:
-                ways.finish(rule.body, self.bind_all(Match([], match.bindings), env))
+                outcomes.finish(rule.body, self.bind_all(Match([], match.bindings), env))
             with self.block() as otherwise:
-                ways.give_up()
+                outcomes.give_up()
             self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
             return
         if condition is None or is_last:
-            ways.finish(rule.body, self.bind_all(Match([], match.bindings), env))
+            outcomes.finish(rule.body, self.bind_all(Match([], match.bindings), env))
             return
         with self.block() as then:
-            ways.finish(rule.body, self.bind_all(Match([], match.bindings), env))
+            outcomes.finish(rule.body, self.bind_all(Match([], match.bindings), env))
         with self.block() as otherwise:
-            self._rule(index + 1, rules, value, env, exception, ways)
+            self._rule(index + 1, rules, value, env, exception, outcomes)
         self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
 
     def _is_recursive(self, value: Val) -> bool:
@@ -373,8 +373,8 @@ class Branching(Block):
     def tail_rules(self, rules: tuple[core.Rule, ...], value: Val, env: Env) -> None:
         """Return what the rule that fits gives."""
         result = self.representation(rules[0].body.type)
-        ways = Ways(self.tail, lambda: self._return(self.zero(result)))
-        self._chain(rules, value, env, "Match", ways)
+        outcomes = Outcomes(self.tail, lambda: self._return(self.zero(result)))
+        self._chain(rules, value, env, "Match", outcomes)
 
     def _is_short(self, e: core.If) -> bool:
         return size(e) <= 14 and is_simple(e) and not self._may_call_itself(e)

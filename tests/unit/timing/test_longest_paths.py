@@ -1,4 +1,4 @@
-"""Shortest and longest ways of random graphs, next to all ways written out."""
+"""Shortest and longest paths of random graphs, next to all paths written out."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from pn2code.timing.longest import Arc, Ways, longest_inside, shortest
+from pn2code.timing.longest import Arc, TimedPaths, longest_inside, shortest
 
 
 def acyclic(r: Random, count: int) -> list[list[Arc]]:
@@ -32,9 +32,9 @@ def test_they_are_the_least_and_the_most_of_all(seed: int) -> None:
     graph = acyclic(r, 9)
     ends = set(r.sample(range(9), 2))
     expected = list(all_ways(graph, ends))
-    best, ways = shortest(graph, ends), Ways(graph, ends)
-    longest = ways.longest()
-    assert not ways.cycle and not ways.never_end()
+    best, paths = shortest(graph, ends), TimedPaths(graph, ends)
+    longest = paths.longest()
+    assert not paths.cycle and not paths.never_end()
     if not expected:
         assert best is None and longest is None
         return
@@ -42,7 +42,7 @@ def test_they_are_the_least_and_the_most_of_all(seed: int) -> None:
     assert (best.ns, longest.ns) == (min(expected), max(expected))
     for way in (best, longest):
         node = total = 0
-        for target, mark in way.way:
+        for target, mark in way.arcs:
             total += next(ns for t, ns, m in graph[node] if (t, m) == (target, mark))
             node = target
         assert (node, total) == (way.last, way.ns) and node in ends
@@ -50,25 +50,25 @@ def test_they_are_the_least_and_the_most_of_all(seed: int) -> None:
 
 def test_what_takes_time_may_not_go_round_on_the_way_to_an_end() -> None:
     graph: list[list[Arc]] = [[(1, 2, 10)], [(0, 0, 11), (2, 1, 12)], []]
-    ways = Ways(graph, {2})
-    assert ways.longest() is None and set(ways.cycle) == {0, 1}
-    assert ways.never_end()
-    assert Ways(graph, {0}).cycle  # the end itself is on it
+    paths = TimedPaths(graph, {2})
+    assert paths.longest() is None and set(paths.cycle) == {0, 1}
+    assert paths.never_end()
+    assert TimedPaths(graph, {0}).cycle  # the end itself is on it
 
 
 def test_what_goes_round_elsewhere_does_not_matter() -> None:
     graph: list[list[Arc]] = [[(1, 2, 10), (3, 4, 13)], [(2, 1, 11)], [(1, 1, 12)], []]
-    ways = Ways(graph, {3})
-    longest = ways.longest()
-    assert longest is not None and longest.ns == 4 and not ways.cycle
-    assert ways.never_end()
+    paths = TimedPaths(graph, {3})
+    longest = paths.longest()
+    assert longest is not None and longest.ns == 4 and not paths.cycle
+    assert paths.never_end()
 
 
 def test_going_round_in_no_time_is_no_repetition() -> None:
     graph: list[list[Arc]] = [[(1, 3, 10)], [(2, 0, 11)], [(1, 0, 12), (3, 2, 13)], []]
-    longest = Ways(graph, {3}).longest()
+    longest = TimedPaths(graph, {3}).longest()
     assert longest is not None and longest.ns == 5
-    assert [mark for _, mark in longest.way] == [10, 11, 13]
+    assert [mark for _, mark in longest.arcs] == [10, 11, 13]
 
 
 def test_a_weight_counts_only_what_is_asked() -> None:
