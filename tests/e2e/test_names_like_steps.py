@@ -131,6 +131,17 @@ def test_endings_have_runs_of_their_own(tmp_path: Path) -> None:
     }
 
 
+def test_a_final_place_has_a_comma_in_its_name(tmp_path: Path) -> None:
+    pages = _PAGES.replace("TOP", "Top").replace("AGAIN", "out idle")
+    pages = pages.replace("place over", 'place "a, b"').replace("out over", 'out "a, b"')
+    (tmp_path / "cell.cpnt").write_text(pages, encoding="utf-8")
+    config = _TOML.replace("DEVICE", "dev").replace('["over"]', '["a, b"]')
+    (tmp_path / "cell.toml").write_text(config, encoding="utf-8")
+    done = CliRunner().invoke(app, ["time", str(tmp_path), "--json"])
+    endings = json.loads(done.stdout)["layouts"][0]["cycle"]["endings"]
+    assert [e["final"] for e in endings] == [["Top.supervisor.a, b"]]
+
+
 _PARTS = """standard
 var n : INT;
 page Top

@@ -72,7 +72,7 @@ class Ending:
             ends the other way round.
     """
 
-    places: str
+    places: tuple[str, ...]
     least: int | None
     most: int | None
     fastest: Run | None = None
@@ -82,7 +82,7 @@ class Ending:
     def row(self) -> dict[str, Any]:
         """For programs."""
         return {
-            "final": self.places.split(", "),
+            "final": list(self.places),
             "least_s": _down(self.least),
             "most_s": _up(self.most),
             "fastest": _file(self.fastest),

@@ -245,7 +245,7 @@ class _Look:
         for places, ending in search.endings.items():
             best = ending.best if is_first else None
             worst = ending.worst if is_known else None
-            word = re.sub(r"[^\w+-]+", "_", places.replace(", ", "+").split(".")[-1])
+            word = re.sub(r"[^\w+-]+", "_", places[-1].rpartition(".")[2])
             numbered = (f"{word}{k}" for k in itertools.count(2))
             own = word if word not in taken else next(x for x in numbered if x not in taken)
             taken.add(own)

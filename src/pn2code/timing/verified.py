@@ -69,7 +69,8 @@ class Durations:
                 seconds = f"{best} to {worst}"
                 if c.late:
                     seconds = f"not known, as answers may be too late; if none were: {seconds}"
-                out.append(f"{where}cycle to `{e.places.split('.')[-1]}`: {seconds}")
+                last = " and ".join(p.rpartition(".")[2] for p in e.places)
+                out.append(f"{where}cycle to `{last}`: {seconds}")
             out += [f"{where}{other}" for other in c.others]
         return tuple(out)
 

@@ -10,7 +10,7 @@ S = 1_000_000_000
 
 
 def cycle(most: int | None, why: str = "", *others: str) -> Cycle:
-    return Cycle((Ending("Done", S, most),), why, (), S, 9 * S, others, 100)
+    return Cycle((Ending(("Done",), S, most),), why, (), S, 9 * S, others, 100)
 
 
 @pytest.mark.parametrize(
