@@ -12,7 +12,6 @@ commands end, if none takes more than its planned time (`timing.anyhow`), it res
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +34,7 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
 from pn2code.verify.answers.properties import Answer, Evidence, Verdict
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.run_names import run_names
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.limits import Limits
 
@@ -266,8 +266,8 @@ class _Judge:
         search = one.search
         elements = [x for _, x in search.way(wait.before) if x >= 0]
         elements += [x for _, x in wait.way if x >= 0]
-        slug = re.sub(r"[^A-Za-z0-9_.]+", "-", a.about.name).strip("-.")[:60] or "property"
-        file = self.folder / f"{stem(self.opened)}.{slug}.trace.jsonl"
+        name = run_names(p.name for p in self.asked.properties)[a.about.name]
+        file = self.folder / f"{stem(self.opened)}.{name}.trace.jsonl"
         run = write(search.graph, elements, (), file, self.opened.initial)
         evidence = None if run.file is None else Evidence(run.file, run.steps, None)
         value = None if ns is None else max(0, ns - TIE) // (NS // 1000) / 1000
