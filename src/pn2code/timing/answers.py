@@ -97,6 +97,10 @@ def _unless(others: Sequence[str]) -> tuple[Within, str]:
     return "yes", ""
 
 
+ENDLESS = "a run may go on for ever, and never come to its end"
+"""One of `Cycle.others`."""
+
+
 @frozen
 class Cycle:
     """How long a cycle takes.
@@ -144,6 +148,11 @@ class Cycle:
         """ns: of all endings; None: not known, or there is none."""
         found = [e.most for e in self.endings if e.most is not None]
         return max(found) if found and len(found) == len(self.endings) else None
+
+    @property
+    def ends(self) -> list[str]:
+        """Of what runs may do that do not come to the end, that they end before it."""
+        return [x for x in self.others if x != ENDLESS]
 
     def within(self, seconds: float) -> tuple[Within, str]:
         """Whether each run comes to its end within so many seconds, and why not, or why it is not known."""

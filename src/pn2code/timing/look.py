@@ -25,7 +25,7 @@ from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
-from pn2code.timing.answers import Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import Way, longest_inside
@@ -270,7 +270,7 @@ class _Look:
         if search.halts:
             yield _HALTS
         if search.is_endless and not search.cycle:
-            yield "a run may go on for ever, and never come to its end"
+            yield ENDLESS
         if not search.ends and not search.why:
             yield "no run comes to its end"
 

@@ -190,7 +190,7 @@ class _Judge:
             return open_(f"the longest wait is as long as that, to {near(held_up)}")
         stops = self.control.stops if self.control is not None else ""
         others = [stops] if stops else []
-        others += [x for x in layout.cycle.others if "go on for ever" not in x]
+        others += layout.cycle.ends
         if others:
             return open_(f"where it comes, it comes in time, but {others[0]}")
         anyhow = one.anyhow
