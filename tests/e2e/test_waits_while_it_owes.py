@@ -104,8 +104,18 @@ instance = "Second"
 _CHANNEL = '[[channel]]\nplace = "{0}"\nfile = "{0}.robcad"\n'
 
 
-def _ends(folder: Path, order: str, positive: str) -> tuple[str, str, str]:
-    net = _NET.replace("ORDER", order).replace("    POSITIVE\n", positive)
+_TIMED = (
+    ("var n : INT;", "var n : INT;\ncolset LATER = INT timed;"),
+    ("place Told : INT", "place Told : LATER"),
+    ("out Told : n", "out Told : n @+ 2"),
+)
+
+
+def _ends(folder: Path, order: str, positive: str, timed: bool = False) -> tuple[str, str, str]:
+    net = _NET
+    for old, new in _TIMED if timed else ():
+        net = net.replace(old, new)
+    net = net.replace("ORDER", order).replace("    POSITIVE\n", positive)
     channels = ("order", "done", "other", *(["help"] if positive else []), "hello", "please")
     toml = "".join(map(_CHANNEL.format, channels)) + 'kind = "data"\n'
     if not positive:  # nobody looks at `help`
@@ -128,5 +138,11 @@ def test_its_guard_lets_it_wait_for_the_other_message(positive: str, tmp_path: P
     assert "`First` may have to wait for others (" in says
 
 
-def test_it_waits_for_nothing_where_the_guard_is_true(tmp_path: Path) -> None:
-    assert _ends(tmp_path, "1", "")[0] == "yes"
+@pytest.mark.parametrize("timed", [False, True])
+def test_it_waits_for_nothing_where_the_guard_is_true(timed: bool, tmp_path: Path) -> None:
+    """It may wait for its time."""
+    assert _ends(tmp_path, "1", "", timed)[0] == "yes"
+
+
+def test_it_waits_when_its_time_has_come(tmp_path: Path) -> None:
+    assert _ends(tmp_path, "0", "", True)[:2] == ("unknown", "late")

@@ -94,7 +94,8 @@ class Silence:
     Args:
         owes: the place that is marked while it does.
         states: the control places at which it may have to wait for a message, with the transitions there.
-        steps: of its own, which it takes before it waits.
+        steps: of its own, which it takes before it waits, and of the clock: while time goes on, it may be this that
+            it waits for; whoever waits for a message still does so when nobody waits for time any more.
         answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
         unanswered: where its script ends without an answer, see `unanswered`; "": it always answers.
         awaited: for which messages of others than the supervisor it waits, in words: "`away` of robot `maker`".
@@ -519,7 +520,7 @@ class _Composer:
                 answers = tuple((place, self.seen[place]) for place in mine)
                 who = self.partition.owners[owner].phrase
                 awaited = tuple(self._of_others(owner))
-                steps = tuple(self._before_waiting(owner))
+                steps = (*self._before_waiting(owner), *self.clock)
                 never = unanswered(program)
                 yield Silence(who, owes, tuple(states), answers, steps, never, awaited)
 
