@@ -131,6 +131,48 @@ def test_endings_have_runs_of_their_own(tmp_path: Path) -> None:
     }
 
 
+def test_a_final_place_has_a_comma_in_its_name(tmp_path: Path) -> None:
+    pages = _PAGES.replace("TOP", "Top").replace("AGAIN", "out idle")
+    pages = pages.replace("place over", 'place "a, b"').replace("out over", 'out "a, b"')
+    (tmp_path / "cell.cpnt").write_text(pages, encoding="utf-8")
+    config = _TOML.replace("DEVICE", "dev").replace('["over"]', '["a, b"]')
+    (tmp_path / "cell.toml").write_text(config, encoding="utf-8")
+    done = CliRunner().invoke(app, ["time", str(tmp_path), "--json"])
+    endings = json.loads(done.stdout)["layouts"][0]["cycle"]["endings"]
+    assert [e["final"] for e in endings] == [["Top.supervisor.a, b"]]
+
+
+_PARTS = """standard
+var n : INT;
+page Top
+  place P : INT = 1`0 ++ 1`1
+  place Q
+  trans T
+    in P : n
+    out Q
+  trans "T#1"
+    in P : n
+    out Q
+  trans "T#2"
+    guard [n = 0]
+    in P : n
+    out Q
+"""
+
+
+def test_a_transition_is_called_as_a_part_of_another_one(tmp_path: Path) -> None:
+    """`T#1` and `T#2` are what a transition with a condition on its binding becomes: the run was no run."""
+    (tmp_path / "net.cpnt").write_text(_PARTS, encoding="utf-8")
+    asked = 'ltl G (fires("Top.T", { n = 1 }) -> X G !fires("Top.T#2"))'
+    options = ["--property", asked, "--json", "--traces", str(tmp_path)]
+    done = CliRunner().invoke(app, ["verify", str(tmp_path / "net.cpnt"), *options])
+    (found,) = json.loads(done.stdout)["properties"]
+    assert (found["answer"], "property-evidence" in done.output) == ("no", False)
+    rows = map(json.loads, Path(found["evidence"]["trace"]).read_text().splitlines())
+    steps = [row["transition"] for row in rows if "transition" in row]
+    assert steps == ["Top.T", "Top.T#2"]
+
+
 _TOLD = """standard
 var n : INT;
 page Top

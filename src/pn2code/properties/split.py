@@ -96,6 +96,7 @@ class Split:
         used = dict.fromkeys(k for p in group for k in _conditions(p))
         made: list[FlatTransition] = []
         names: list[str] = []
+        taken = {t.name for t in net.transitions}
         parts: dict[int, list[int]] = {}
         holds: dict[int, list[int]] = {k: [] for k in used}
         for t in net.transitions:
@@ -106,7 +107,7 @@ class Split:
                     properties.steps[k].exp if is_so else _negated(properties.steps[k].exp)
                     for k, is_so in zip(own, outcome, strict=True)
                 ]
-                name = f"{t.name}#{number + 1}" if own else t.name
+                name = _unused(f"{t.name}#{number + 1}", taken) if own else t.name
                 made.append(replace(t, index=index, name=name, guards=(*t.guards, *guards)))
                 names.append(t.name)
                 parts.setdefault(t.index, []).append(index)
@@ -134,6 +135,14 @@ class Split:
             lines.append(json.dumps(line, ensure_ascii=False) + "\n")
         with whole_file(trace) as beside:
             beside.write_text("".join(lines), encoding="utf-8", errors="surrogateescape")
+
+
+def _unused(name: str, taken: set[str]) -> str:
+    """A name for a part that nothing else has, so that it is known by it in a trace."""
+    while name in taken:
+        name += "#"
+    taken.add(name)
+    return name
 
 
 def _negated(exp: core.Exp) -> core.Exp:

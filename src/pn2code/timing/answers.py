@@ -72,7 +72,7 @@ class Ending:
             ends the other way round.
     """
 
-    places: str
+    places: tuple[str, ...]
     least: int | None
     most: int | None
     fastest: Run | None = None
@@ -82,7 +82,7 @@ class Ending:
     def row(self) -> dict[str, Any]:
         """For programs."""
         return {
-            "final": self.places.split(", "),
+            "final": list(self.places),
             "least_s": _down(self.least),
             "most_s": _up(self.most),
             "fastest": _file(self.fastest),
@@ -95,6 +95,10 @@ def _unless(others: Sequence[str]) -> tuple[Within, str]:
     if others:
         return "unknown", f"each run that comes to its end does, but {'; '.join(others)}"
     return "yes", ""
+
+
+ENDLESS = "a run may go on for ever, and never come to its end"
+"""One of `Cycle.others`."""
 
 
 @frozen
@@ -144,6 +148,11 @@ class Cycle:
         """ns: of all endings; None: not known, or there is none."""
         found = [e.most for e in self.endings if e.most is not None]
         return max(found) if found and len(found) == len(self.endings) else None
+
+    @property
+    def ends(self) -> list[str]:
+        """Of what runs may do that do not come to the end, that they end before it."""
+        return [x for x in self.others if x != ENDLESS]
 
     def within(self, seconds: float) -> tuple[Within, str]:
         """Whether each run comes to its end within so many seconds, and why not, or why it is not known."""

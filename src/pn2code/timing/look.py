@@ -25,7 +25,7 @@ from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
-from pn2code.timing.answers import Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import TimedPath, longest_inside
@@ -247,7 +247,7 @@ class _Look:
         for places, ending in search.endings.items():
             best = ending.best if is_first else None
             worst = ending.worst if is_known else None
-            word = re.sub(r"[^\w+-]+", "_", places.replace(", ", "+").split(".")[-1])
+            word = re.sub(r"[^\w+-]+", "_", places[-1].rpartition(".")[2])
             numbered = (f"{word}{k}" for k in itertools.count(2))
             own = word if word not in taken else next(x for x in numbered if x not in taken)
             taken.add(own)
@@ -272,7 +272,7 @@ class _Look:
         if search.halts:
             yield _HALTS
         if search.is_endless and not search.cycle:
-            yield "a run may go on for ever, and never come to its end"
+            yield ENDLESS
         if not search.ends and not search.why:
             yield "no run comes to its end"
 

@@ -69,7 +69,7 @@ def _cycle(cycle: Cycle, timeout: float) -> Iterator[str]:
     )
     yield "over all orders that the net permits and all values of sensors:"
     for ending in cycle.endings:
-        where = " and ".join(p.rpartition(".")[2] for p in ending.places.split(", "))
+        where = " and ".join(p.rpartition(".")[2] for p in ending.places)
         best = "not known" if ending.least is None else f"{seconds_down(ending.least)} s"
         if ending.most is not None:
             worst = f"{seconds_up(ending.most)} s"

@@ -2,7 +2,7 @@
 
     search = Search(doings)
     search.explore()
-    search.endings["Top.Supervisor.Finished"].best      # TimedPath; ...worst: None: there is no longest one
+    search.endings["Top.Supervisor.Finished",].best     # TimedPath; ...worst: None: there is no longest one
     search.why                          # why not all runs are known; "": they are
 
 A situation is a state of the cell, where its arms stand, and what is under way with the time that it still takes. At
@@ -80,7 +80,7 @@ class Search:
         self.stuck: list[int] = []
         self.faults: dict[str, int] = {}
         self.halts = False
-        self.endings: dict[str, Ending] = {}
+        self.endings: dict[tuple[str, ...], Ending] = {}
         self.cycle: list[int] = []
         self.is_endless = False
         self.seen_until = 0
@@ -135,7 +135,7 @@ class Search:
         marked = self.graph.marked[state]
         places = self.graph.partition.net.places
         finals = sorted(p for p in self.graph.partition.final_places if p in marked)
-        ending = self.endings.setdefault(", ".join(places[p].name for p in finals), Ending())
+        ending = self.endings.setdefault(tuple(places[p].name for p in finals), Ending())
         ending.nodes.append(node)
         if ending.best is None:
             ending.best = TimedPath(now, tuple(self.way(node)))

@@ -12,7 +12,6 @@ commands end, if none takes more than its planned time (`timing.anyhow`), it res
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +34,7 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
 from pn2code.verify.answers.properties import Answer, Evidence, Verdict
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.run_names import run_names
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.limits import Limits
 
@@ -69,7 +69,8 @@ class Durations:
                 seconds = f"{best} to {worst}"
                 if c.late:
                     seconds = f"not known, as answers may be too late; if none were: {seconds}"
-                out.append(f"{where}cycle to `{e.places.split('.')[-1]}`: {seconds}")
+                last = " and ".join(p.rpartition(".")[2] for p in e.places)
+                out.append(f"{where}cycle to `{last}`: {seconds}")
             out += [f"{where}{other}" for other in c.others]
         return tuple(out)
 
@@ -189,7 +190,7 @@ class _Judge:
             return open_(f"the longest wait is as long as that, to {near(held_up)}")
         stops = self.control.stops if self.control is not None else ""
         others = [stops] if stops else []
-        others += [x for x in layout.cycle.others if "go on for ever" not in x]
+        others += layout.cycle.ends
         if others:
             return open_(f"where it comes, it comes in time, but {others[0]}")
         anyhow = one.anyhow
@@ -265,8 +266,8 @@ class _Judge:
         search = one.search
         elements = [x for _, x in search.way(wait.before) if x >= 0]
         elements += [x for _, x in wait.way if x >= 0]
-        slug = re.sub(r"[^A-Za-z0-9_.]+", "-", a.about.name).strip("-.")[:60] or "property"
-        file = self.folder / f"{stem(self.opened)}.{slug}.trace.jsonl"
+        name = run_names(p.name for p in self.asked.properties)[a.about.name]
+        file = self.folder / f"{stem(self.opened)}.{name}.trace.jsonl"
         run = write(search.graph, elements, (), file, self.opened.initial)
         evidence = None if run.file is None else Evidence(run.file, run.steps, None)
         value = None if ns is None else max(0, ns - TIE) // (NS // 1000) / 1000

@@ -9,7 +9,8 @@ from pn2code.ml.core.terms import Builtin, Dec, Program, RecBind, Symbol, ValBin
 
 _IMPURE = frozenset({"Ms.random", "Colset.ran"})
 _IMPURE_STRUCTURES = (
-    "Random.", "TextIO.", "IO.", "OS.", "Time.step", "Time.time", "Timer.", "Date.", "Ref.", "Array.", "CPN'",
+    "Random.", "TextIO.", "BinIO.", "IO.", "OS.", "Posix.", "CommandLine.", "ConnManagementLayer.", "Time.step",
+    "Time.time", "Time.now", "Timer.", "Date.", "Ref.", "Array.", "CPN'",
 )  # fmt: skip
 
 

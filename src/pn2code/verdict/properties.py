@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -27,6 +26,7 @@ from pn2code.verify.answers import confirm
 from pn2code.verify.answers.lasso import write_loop
 from pn2code.verify.answers.properties import Answer, Evidence, answers, counted, drawn
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.run_names import run_names
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
@@ -224,7 +224,9 @@ def answered(
     """
     plain = answers(asked.plain, found.answers, found)
     if found.covering is not None:
-        plain = tuple(_pumped(a, found.covering, opened, folder) for a in plain)
+        plain = tuple(
+            _pumped(a, found.covering, opened, folder, number) for number, a in enumerate(plain)
+        )
     if nondeterminism.draws(opened.flat):
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if nondeterminism.counts(opened.flat):
@@ -259,8 +261,11 @@ def answered(
     return tuple(looked)
 
 
-def _pumped(a: Answer, run: Covering, opened: OpenNet, folder: Path) -> Answer:
-    """The answer about an upper bound of a place that grows: so many rounds of the run exceed it."""
+def _pumped(a: Answer, run: Covering, opened: OpenNet, folder: Path, number: int) -> Answer:
+    """The answer about an upper bound of a place that grows: so many rounds of the run exceed it.
+
+    `number`: of the answer, by which its run is known until it gets a name.
+    """
     asked = a.about.asked
     if a.answer != "inconclusive" or not isinstance(asked, m.Bound) or asked.high is None:
         return a
@@ -271,7 +276,7 @@ def _pumped(a: Answer, run: Covering, opened: OpenNet, folder: Path) -> Answer:
     found = replace(a, answer="no", why="")
     if steps > MOST_PUMPED:
         return replace(found, is_pumped=True)
-    trace = folder / f".pn2code-{os.getpid()}-{a.about.name!r:.40}.trace.jsonl".replace("/", "-")
+    trace = folder / f".pn2code-{os.getpid()}-{number}.trace.jsonl"
     written = write_covering(opened.flat, opened.storage, run, trace, rounds)
     return replace(found, evidence=Evidence(trace, steps, None)) if written else found
 
@@ -343,17 +348,13 @@ def _confirmed(
 
 def _named(given: Sequence[Answer], folder: Path, stem: str) -> tuple[Answer, ...]:
     """With traces called by the names of the properties; without those that cannot be called so."""
-    used: set[str] = set()
+    names = run_names(answer.about.name for answer in given)
     named = []
     for answer in given:
         if answer.evidence is None:
             named.append(answer)
             continue
-        slug = re.sub(r"[^A-Za-z0-9_.]+", "-", answer.about.name).strip("-.")[:60] or "property"
-        while slug.lower() in used:
-            slug += "-2"
-        used.add(slug.lower())
-        trace = folder / f"{stem}.{slug}.trace.jsonl"
+        trace = folder / f"{stem}.{names[answer.about.name]}.trace.jsonl"
         unnamed, loop = answer.evidence.trace, answer.evidence.loop
         try:
             if loop is not None:

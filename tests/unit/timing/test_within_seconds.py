@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from pn2code.timing.answers import Cycle, Ending
+from pn2code.timing.answers import ENDLESS, Cycle, Ending
 
 S = 1_000_000_000
 
 
 def cycle(most: int | None, why: str = "", *others: str) -> Cycle:
-    return Cycle((Ending("Done", S, most),), why, (), S, 9 * S, others, 100)
+    return Cycle((Ending(("Done",), S, most),), why, (), S, 9 * S, others, 100)
 
 
 @pytest.mark.parametrize(
@@ -29,3 +29,9 @@ def cycle(most: int | None, why: str = "", *others: str) -> Cycle:
 def test_within_ten_seconds(found: Cycle, answer: str) -> None:
     """Where not all runs were looked at one of them may stop on its way, however short all those are that end."""
     assert found.within(10.0)[0] == answer
+
+
+def test_what_is_named_as_a_run_that_goes_on_is_none() -> None:
+    """Where an event comes in time, a run may go on for ever after it, but not stop before it."""
+    stops = "a run may stop: nothing is at `go on for ever`"
+    assert cycle(None, "", stops, ENDLESS).ends == [stops]

@@ -110,10 +110,11 @@ def table_of(running: Running, groups: Sequence[Collection[int]]) -> Turns:
 def group(silence: Silence) -> frozenset[int]:
     """The places that the question about a silence mentions."""
     control = {place for place, _ in silence.states}
-    messages = {p for _, steps in silence.states for step in steps for m in step for p in m}
-    return frozenset(
-        {silence.owes, *control, *messages, *(p for pair in silence.answers for p in pair)}
-    )
+    ways = [ready for _, ready_there in silence.states for ready in ready_there]
+    messages = {p for ready in ways for m in ready.messages for p in m}
+    own = {p for ready in ways for p in ready.places}
+    answers = {p for pair in silence.answers for p in pair}
+    return frozenset({silence.owes, *control, *messages, *own, *answers})
 
 
 def look(

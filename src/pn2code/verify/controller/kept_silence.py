@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import reduce
 
 from pn2code.properties.questions import Questions
-from pn2code.verify.controller.running import Silence
+from pn2code.verify.controller.running import Ready, Silence
 
 
 def kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:
@@ -24,14 +24,20 @@ def kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:
     def joined(operator: str, items: Sequence[int]) -> int:
         return reduce(lambda a, b: asked.line(f"{operator} {a} {b}"), items)
 
-    waits = [
-        joined("and", [marked(place), *(no(joined("and", _flat(marked, x))) for x in needed)])
-        for place, needed in silence.states
-    ]
+    def possible(transition: int) -> int:
+        return asked.line(f"enabled {transition}")
+
+    def goes_on(ready: Ready) -> list[int]:
+        own = [] if ready.transition is None else [possible(ready.transition)]
+        return [*(marked(place) for places in ready.messages for place in places), *own]
+
+    def waits_at(place: int, ways: Sequence[Ready]) -> int:
+        ends = [joined("and", goes_on(ready)) for ready in ways]
+        if any(ready.transition is not None for ready in ways):
+            ends += map(possible, silence.steps)
+        return joined("and", [marked(place), *map(no, ends)])
+
+    waits = [waits_at(place, ways) for place, ways in silence.states]
     unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
     others = [marked(p) for p in (silence.owes, idle) if p is not None] + [*map(no, unseen)]
     return no(joined("and", [*others, joined("or", waits)]))
-
-
-def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> list[int]:
-    return [marked(place) for places in messages for place in places]

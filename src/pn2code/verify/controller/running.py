@@ -49,6 +49,7 @@ from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition, Form, Role
 from pn2code.net.predicate import Predicate
+from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.poses import Bad
@@ -57,6 +58,7 @@ from pn2code.verify.controller.stops import NoProgramError, machine, waits
 from pn2code.verify.controller.unanswered import unanswered
 from pn2code.verify.controller.unsure import Conditions
 from pn2code.verify.exploring import time_reduction
+from pn2code.verify.exploring.elements import colours
 
 MOST_OWNERS = 250
 OWING = "has finished, but it owes an answer"
@@ -70,13 +72,30 @@ class NotModelledError(Exception):
 
 
 @frozen
+class Ready:
+    """When a script that has come to a control place need not wait any longer: one of its transitions can occur there.
+
+    Args:
+        messages: for each of its messages the places that are marked if it is there.
+        transition: it has to be enabled as well, since its guard or its tokens may leave the script waiting for the
+            messages of another one; None: where its messages are there, the script goes on, or stops.
+        places: its own places, which tell then whether it is.
+    """
+
+    messages: tuple[tuple[int, ...], ...]
+    transition: int | None = None
+    places: tuple[int, ...] = ()
+
+
+@frozen
 class Silence:
     """When somebody waits for others while it owes an answer (I8 of docs/protocol.md): for how long, nobody knows.
 
     Args:
         owes: the place that is marked while it does.
-        states: the control places at which all transitions need messages; of each transition, for each of its
-            messages, the places that are marked if it is there.
+        states: the control places at which it may have to wait for a message, with the transitions there.
+        steps: of its own, which it takes before it waits, and of the clock: while time goes on, it may be this that
+            it waits for; whoever waits for a message still does so when nobody waits for time any more.
         answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
         unanswered: where its script ends without an answer, see `unanswered`; "": it always answers.
         awaited: for which messages of others than the supervisor it waits, in words: "`away` of robot `maker`".
@@ -84,8 +103,9 @@ class Silence:
 
     who: str
     owes: int
-    states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
+    states: tuple[tuple[int, tuple[Ready, ...]], ...]
     answers: tuple[tuple[int, int], ...]
+    steps: tuple[int, ...] = ()
     unanswered: str = ""
     awaited: tuple[str, ...] = ()
 
@@ -314,6 +334,7 @@ class _Composer:
         self.step_owner: list[int] = []
         self.clock: list[int] = []
         self.probes: list[int] = []
+        self.stops: list[int] = []
         # Priorities count among the steps of an owner: firing comes before publishing, that before resting.
         self.after = max([t.priority for t in partition.net.transitions] or [1000]) + 1
         looked = [c for c in partition.channels if c.reader == SUPERVISOR]
@@ -400,7 +421,10 @@ class _Composer:
             arcs = (*arcs, self.b.absent(self.stopped))
         self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
         self.step_owner.append(owner)
-        return len(self.partition.net.transitions) + len(self.step_owner) - 1
+        number = len(self.partition.net.transitions) + len(self.step_owner) - 1
+        if any(a.place == self.stopped and a.kind is ArcKind.OUTPUT for a in arcs):
+            self.stops.append(number)
+        return number
 
     def _on(self, place: int) -> Arc:
         return self.b.put(place, self.b.dot)
@@ -509,17 +533,58 @@ class _Composer:
             program = self.machines[owner]
             states = []
             for place in program.control:
-                steps = program.steps_from(place)
-                needed = [[p for p, *_ in s.takes if p in program.channels] for s in steps]
-                if needed and all(needed):
-                    there = (tuple((p, *self._shown(p)) for p in places) for places in needed)
-                    states.append((place, tuple(there)))
+                ready = self._ready(program, program.steps_from(place))
+                if ready:
+                    states.append((place, ready))
             mine = [c.place for c in self.looked if c.writer == owner]
             if states:
                 answers = tuple((place, self.seen[place]) for place in mine)
                 who = self.partition.owners[owner].phrase
                 awaited = tuple(self._of_others(owner))
-                yield Silence(who, owes, tuple(states), answers, unanswered(program), awaited)
+                steps = (*self._before_waiting(owner), *self.clock)
+                never = unanswered(program)
+                yield Silence(who, owes, tuple(states), answers, steps, never, awaited)
+
+    def _ready(self, program: Machine, steps: Sequence[Step]) -> tuple[Ready, ...]:
+        """When a script goes on that has come to where these are possible; empty: it waits for no message there."""
+        needed = [[p for p, *_ in s.takes if p in program.channels] for s in steps]
+        is_free = [self._is_free(s) for s in steps]
+        if not any(needed) or any(f and not n for f, n in zip(is_free, needed, strict=True)):
+            return ()
+        are_equal = len(set(map(frozenset, needed))) == 1
+        found = []
+        for s, messages, free in zip(steps, needed, is_free, strict=True):
+            there = tuple((p, *self._shown(p)) for p in messages)
+            if are_equal or free:
+                found.append(Ready(there))
+            else:
+                own = tuple(p for p, *_ in s.takes if p not in program.channels)
+                found.append(Ready(there, s.transition.index, own))
+        return tuple(found)
+
+    def _is_free(self, step: Step) -> bool:
+        """Whether it can occur with whatever tokens there are."""
+        bound: set[int] = set()
+        for place, term, *_ in step.takes:
+            colset = self.b.places[place].colset
+            if colours(colset) == 1:
+                continue
+            match term.value:
+                case core.Var(symbol=core.Symbol(uid=uid, colset=own)) if (
+                    uid not in bound and own is not None and own.resolved == colset.resolved
+                ):
+                    bound.add(uid)
+                case _:
+                    return False
+        return not step.transition.guards
+
+    def _before_waiting(self, owner: int) -> Iterator[int]:
+        """The steps of a program, but for its probes and those with which it stops."""
+        first = len(self.partition.net.transitions)
+        others = {*self.probes, *self.stops}
+        for number, whose in enumerate(self.step_owner, first):
+            if whose == owner and number not in others:
+                yield number
 
     def _of_others(self, reader: int) -> Iterator[str]:
         """The messages that a program gets from others than the supervisor, in words."""

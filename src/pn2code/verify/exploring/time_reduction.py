@@ -43,7 +43,9 @@ _OUTSIDE_PREFIXES = (
     "TextIO.",
     "OS.",
     "BinIO.",
+    "CommandLine.",
     "ConnManagementLayer.",
+    "Time.now",
     "Timer.",
 )
 _RANDOM = frozenset({"Ms.random", "Colset.ran"})
