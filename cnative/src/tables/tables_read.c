@@ -207,6 +207,12 @@ static void read_enabled(reader_t *r, tb_formula_t *f)
     for (uint32_t i = 0U; i < f->count; i++) {
         f->transition[i] = index_below(r, r->net->transitions);
     }
+    if ((f->count > (uint32_t)TB_FEW) && (f->count > (r->net->transitions / 32U))) { /* no longer than the list */
+        f->is_one = tb_new(((size_t)r->net->transitions / 64U) + 1U, sizeof *f->is_one);
+        for (uint32_t i = 0U; i < f->count; i++) {
+            f->is_one[f->transition[i] / 64U] |= UINT64_C(1) << (f->transition[i] % 64U);
+        }
+    }
 }
 
 static void read_parts(reader_t *r, tb_formula_t *f, uint32_t parts, uint32_t *numbers)
