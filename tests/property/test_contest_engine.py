@@ -79,25 +79,25 @@ def test_reachability_and_bounds(program: Path) -> None:
     assert 0.2 < reached / (8 * NETS) < 0.95, "the conditions decide something"
 
 
-def with_many_bindings(tables: Tables, copies: int) -> Tables:
-    """The same steps, each as that of so many bindings of its transition."""
+def with_many_bindings(tables: Tables, copies: int, *, together: bool) -> Tables:
+    """The same steps, each as that of so many bindings of its transition, which are numbered together or in turn."""
     n = len(tables.pre)
+    order = [t for _ in range(copies) for t in range(n)]
+    order = sorted(order) if together else order
+    of = {t: tuple(i for i, x in enumerate(order) if x == t) for t in range(n)}
     return Tables(
         tables.initial,
-        tables.pre * copies,
-        tables.post * copies,
+        tuple(tables.pre[t] for t in order),
+        tuple(tables.post[t] for t in order),
         tables.places,
-        {
-            x: tuple(t + k * n for k in range(copies) for t in of)
-            for x, of in tables.transitions.items()
-        },
+        {x: tuple(i for t in own for i in of[t]) for x, own in tables.transitions.items()},
     )
 
 
 def test_one_of_very_many_bindings_is_enabled(program: Path) -> None:
     """Then what is enabled is looked at, and only some bindings for a guess how far it is."""
     for draw, tables, graph in list(nets())[:20]:
-        many = with_many_bindings(tables, 300)
+        many = with_many_bindings(tables, 300, together=draw.random() < 0.5)
         conditions = [random_condition(draw, tables) for _ in range(8)]
         formulas = [random_branching(draw, tables) for _ in range(6)]
         questions = [many.reach(i, f) for i, f in enumerate(conditions)]
