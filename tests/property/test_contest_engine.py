@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,11 +13,13 @@ from helpers.random_tables import Graph, random_branching, random_condition, ran
 from helpers.thorough import amount
 from pn2code.contest import linear
 from pn2code.contest.engine import Answer, Space, Task, ask, engine
-from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
+from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, Tokens
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
 NETS = amount(60, 150)
+PROCESSOR_S = 3
+"""Of processor time; it takes a tenth of that."""
 SECONDS = 600.0
 """Never needed: all methods come to their end."""
 
@@ -74,6 +77,56 @@ def test_reachability_and_bounds(program: Path) -> None:
             found = answers(program, tables, questions, method)
             assert {n: a.value for n, a in found.items()} == wanted, (method, tables)
     assert 0.2 < reached / (8 * NETS) < 0.95, "the conditions decide something"
+
+
+def with_many_bindings(tables: Tables, copies: int, *, together: bool) -> Tables:
+    """The same steps, each as that of so many bindings of its transition, which are numbered together or in turn."""
+    n = len(tables.pre)
+    order = [t for _ in range(copies) for t in range(n)]
+    order = sorted(order) if together else order
+    of = {t: tuple(i for i, x in enumerate(order) if x == t) for t in range(n)}
+    return Tables(
+        tables.initial,
+        tuple(tables.pre[t] for t in order),
+        tuple(tables.post[t] for t in order),
+        tables.places,
+        {x: tuple(i for t in own for i in of[t]) for x, own in tables.transitions.items()},
+    )
+
+
+def test_one_of_very_many_bindings_is_enabled(program: Path) -> None:
+    """Then what is enabled is looked at, and only some bindings for a guess how far it is."""
+    for draw, tables, graph in list(nets())[:20]:
+        many = with_many_bindings(tables, 300, together=draw.random() < 0.5)
+        conditions = [random_condition(draw, tables) for _ in range(8)]
+        formulas = [random_branching(draw, tables) for _ in range(6)]
+        questions = [many.reach(i, f) for i, f in enumerate(conditions)]
+        wanted = {i: bool(graph.where(f)) for i, f in enumerate(conditions)}
+        for method in ("reach", "explore"):
+            found = answers(program, many, questions, method)
+            assert {n: a.value for n, a in found.items()} == wanted, (method, tables)
+        questions = [many.ctl(i, f) for i, f in enumerate(formulas)]
+        found = answers(program, many, questions, "ctl")
+        assert {n: a.value for n, a in found.items()} == {
+            i: 0 in graph.where(f) for i, f in enumerate(formulas)
+        }
+
+
+def test_what_is_enabled_costs_no_more_where_a_transition_has_very_many_bindings(
+    program: Path, tmp_path: Path
+) -> None:
+    """None of 200,000 bindings is enabled in any of 16,384 markings, in each of which 14 other transitions are."""
+    bits, idle = 14, 200_000
+    pre = [{p: 1} for p in range(2 * bits)] + [{2 * bits: 1}] * idle
+    post = [{p ^ 1: 1} for p in range(2 * bits)] + [{2 * bits: 1}] * idle
+    names = {"idle": tuple(range(2 * bits, 2 * bits + idle))}
+    net = Tables((*([1, 0] * bits), 0), tuple(pre), tuple(post), {}, names)
+    file = tmp_path / "net"
+    file.write_text(net.text([net.reach(0, Fireable(("idle",)))]), encoding="ascii")
+    limited = ["prlimit", f"--cpu={PROCESSOR_S}", str(program)]
+    command = [*limited, str(file), "explore", "600", "1024", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.stdout.split()[:3] == ["answer", "0", "no"], done
 
 
 def test_walks_find_what_is_there_and_nothing_else(program: Path) -> None:

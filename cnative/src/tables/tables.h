@@ -74,6 +74,7 @@ typedef struct tb_formula {
     struct tb_formula **part; /* NOT, AND, OR and the operators of time */
     tb_term_t *term;          /* SUM */
     uint32_t *transition;     /* ENABLED */
+    uint64_t *is_one;         /* ENABLED: a bit for each transition of the net, whether it is one; NULL: they are few */
     int64_t limit;            /* SUM */
     uint32_t number;          /* among all formulas of its question, children first */
     bool is_temporal;         /* an operator of time is in it */
@@ -103,7 +104,10 @@ typedef struct tb_automaton {
     tb_move_t *move;
 } tb_automaton_t;
 
-enum { TB_MOST_ATOMS = 63 };
+enum {
+    TB_MOST_ATOMS = 63,
+    TB_FEW = 256 /* transitions of which one is enabled; of more, not all are looked at */
+};
 
 typedef enum tb_answer { TB_UNKNOWN, TB_NO, TB_YES } tb_answer_t;
 

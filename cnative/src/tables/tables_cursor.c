@@ -150,8 +150,18 @@ int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking)
     return total;
 }
 
+/* A transition of a coloured net may have very many bindings; what is enabled may be the shorter list. */
 static bool one_is_enabled(const tb_formula_t *f, const tb_cursor_t *c)
 {
+    if ((f->is_one != NULL) && (c->enabled_count < f->count)) {
+        for (uint32_t i = 0U; i < c->enabled_count; i++) {
+            const uint32_t t = c->enabled[i];
+            if (((f->is_one[t / 64U] >> (t % 64U)) & 1U) != 0U) {
+                return true;
+            }
+        }
+        return false;
+    }
     for (uint32_t i = 0U; i < f->count; i++) {
         if (tb_is_enabled(c, f->transition[i])) {
             return true;

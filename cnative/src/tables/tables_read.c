@@ -14,7 +14,8 @@
  *         a sum has a term for each value
  *
  *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit
- *                | enabled N transition.. | EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
+ *                | enabled N transition.. | among N ranges (first count).. (one of N transitions, in ranges)
+ *                | EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
  *     AUTOMATON  atoms FORMULA.. states, for each state: whether it accepts (0 or 1), how many moves,
  *                (target TRUE FALSE).., where TRUE and FALSE are numbers with the bits of the atoms that must be so
  *
@@ -199,6 +200,17 @@ static void read_sum(reader_t *r, tb_formula_t *f)
     f->limit = number(r, INT64_MIN / 4, INT64_MAX / 4);
 }
 
+/* Bits for the transitions of which one is enabled, where they take no more room than the list. */
+static void note_ones(const reader_t *r, tb_formula_t *f)
+{
+    if ((f->count > (uint32_t)TB_FEW) && (f->count > (r->net->transitions / 32U))) {
+        f->is_one = tb_new(((size_t)r->net->transitions / 64U) + 1U, sizeof *f->is_one);
+        for (uint32_t i = 0U; i < f->count; i++) {
+            f->is_one[f->transition[i] / 64U] |= UINT64_C(1) << (f->transition[i] % 64U);
+        }
+    }
+}
+
 static void read_enabled(reader_t *r, tb_formula_t *f)
 {
     f->op = TB_ENABLED;
@@ -207,6 +219,31 @@ static void read_enabled(reader_t *r, tb_formula_t *f)
     for (uint32_t i = 0U; i < f->count; i++) {
         f->transition[i] = index_below(r, r->net->transitions);
     }
+    note_ones(r, f);
+}
+
+/* The same as ranges: how many transitions, how many ranges, and of each the first one and how many they are. */
+static void read_among(reader_t *r, tb_formula_t *f)
+{
+    f->op = TB_ENABLED;
+    f->count = (uint32_t)number(r, 0, (int64_t)r->net->transitions);
+    f->transition = tb_new(f->count, sizeof *f->transition);
+    const uint32_t ranges = (uint32_t)number(r, 0, (int64_t)r->net->transitions);
+    uint32_t found = 0U;
+    for (uint32_t i = 0U; i < ranges; i++) {
+        const uint32_t first = index_below(r, r->net->transitions);
+        const uint32_t most =
+            (f->count - found) < (r->net->transitions - first) ? (f->count - found) : (r->net->transitions - first);
+        const uint32_t count = (uint32_t)number(r, 0, (int64_t)most);
+        for (uint32_t k = 0U; k < count; k++) {
+            f->transition[found] = first + k;
+            found++;
+        }
+    }
+    if (found != f->count) {
+        tb_fail(TB_EXIT_WRONG, "ranges of %u transitions, not of %u", found, f->count);
+    }
+    note_ones(r, f);
 }
 
 static void read_parts(reader_t *r, tb_formula_t *f, uint32_t parts, uint32_t *numbers)
@@ -238,6 +275,8 @@ static tb_formula_t *formula(reader_t *r, uint32_t *numbers)
         read_sum(r, f);
     } else if (strcmp(word, "enabled") == 0) {
         read_enabled(r, f);
+    } else if (strcmp(word, "among") == 0) {
+        read_among(r, f);
     } else {
         size_t i = 0U;
         while ((i < (sizeof operators / sizeof operators[0])) && (strcmp(word, operators[i].word) != 0)) {

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 
 from pn2code.contest.counting import Counted, smaller
@@ -32,8 +32,9 @@ _TRY = 0.1
 """Of the time, for each of them."""
 _AGAIN = 1.5
 """An order that was given up is tried again with so many times the patience."""
-_SHARES = (0.1, 0.15, 0.15, 0.6)
-"""Of the time, for one order after the other where there are several."""
+_GLANCE = 0.04
+"""Of the time, for each order of a lane that counts; then the first few have more, and the first one what is left."""
+_LONGER = (0.12, 0.12, 0.12)
 _MAKING = 0.2
 """Of the time, to make the net smaller before its markings are counted."""
 
@@ -47,7 +48,7 @@ class Diagrams:
         self.is_tried = False
         self.counted: Counted | None = None
         """The net made smaller to be counted, once that was tried."""
-        self.texts: list[str] | None = None
+        self.counted_orders: list[list[int]] | None = None
         self.whole: int | None = None
         """An order with which they were whole in time."""
         self.patience: dict[int, float] = {}
@@ -86,38 +87,43 @@ class Diagrams:
     def sizes(self, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
 
-        Each order has a short time at first; the most promising two have what is left. Where places were put together
-        as units, the first lane has these, the second one all places by themselves. The net is made smaller, and the
-        orders are made, when the first lane asks for a task, since this takes long for large nets.
+        Each order has a glance at first, since most diagrams are whole soon or never; then the most promising ones have
+        more. Where places were put together as units, the first lane has these, the second one all places by
+        themselves. The net is made smaller, and the orders are made, when the first lane asks for a task, since this
+        takes long for large nets.
         """
         ends = time.monotonic() + seconds
         return [self._lane(which, ends, mebibytes) for which in range(2)]
 
     def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
         with self.lock:
-            row = self._row(which, ends)[:3]
-        shares: tuple[float, ...]
-        shares = (1.0,)
-        if len(row) > 1:
-            row, shares = [*row, row[0]], _SHARES
+            written, row = self._row(which, ends)
+        if not row:
+            return
+        turns = [*((order, _GLANCE) for order in row), *zip(row, _LONGER, strict=False)]
+        turns = turns if len(row) > 1 else []
+        turns.append((row[0], 1.0 - sum(share for _, share in turns)))
         seconds = max(0.0, ends - time.monotonic())
-        for text, share in zip(row, shares[len(shares) - len(row) :], strict=True):
-            yield Task("sizes", text, share * seconds, mebibytes)
+        for order, share in turns:
+            yield Task("sizes", written(order), share * seconds, mebibytes)
 
-    def _row(self, which: int, ends: float) -> list[str]:
-        """The texts of a lane, the most promising ones first."""
+    def _row(
+        self, which: int, ends: float
+    ) -> tuple[Callable[[Sequence[int]], str], list[list[int]]]:
+        """How a lane writes the net with an order, and its orders, the most promising ones first."""
         if not self.is_tried:
             now = time.monotonic()
             self.counted = smaller(self.tables, now + _MAKING * (ends - now))
             self.is_tried = True
-        if self.counted is None:
-            return [self.tables.text([], order) for order in self.orders[which::2]]
-        if self.counted.units:
-            counted = self.counted if which == 0 else self.counted.without_units()
-            return _texts(counted, as_written(self.tables))
-        if self.texts is None:
-            self.texts = _texts(self.counted, as_written(self.tables))
-        return self.texts[which::2]
+        counted = self.counted
+        if counted is None:
+            return lambda order: self.tables.text([], order), self.orders[which::2]
+        if counted.units:
+            counted = counted if which == 0 else counted.without_units()
+            return counted.text, _orders(counted, as_written(self.tables))
+        if self.counted_orders is None:
+            self.counted_orders = _orders(counted, as_written(self.tables))
+        return counted.text, self.counted_orders[which::2]
 
 
 def as_written(tables: Tables) -> list[int]:
@@ -132,8 +138,8 @@ def as_written(tables: Tables) -> list[int]:
     return sorted(range(len(tables.initial)), key=lambda i: at.get(i, (1.0, i)))
 
 
-def _texts(counted: Counted, written: Sequence[int]) -> list[str]:
-    """With one order after the other.
+def _orders(counted: Counted, written: Sequence[int]) -> list[list[int]]:
+    """Of the places that its diagrams have.
 
     Args:
         counted: the net made smaller.
@@ -145,4 +151,4 @@ def _texts(counted: Counted, written: Sequence[int]) -> list[str]:
     for p, (at, _) in counted.level.items():
         first[at] = min(rank[counted.kept[p]], first.get(at, len(rank)))
     levels = sorted(first, key=first.__getitem__)
-    return [counted.text(order) for order in orders(len(t.initial), t.pre, t.post, levels)]
+    return orders(len(t.initial), t.pre, t.post, levels)

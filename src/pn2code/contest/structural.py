@@ -32,6 +32,9 @@ _PASSES_S = (0.3, 1.0, 4.0, 15.0, 60.0, 600.0)
 """Time of the state equation for a question, in one pass after the other."""
 _FEW = 40
 """So many questions are reduced one by one even if that takes long."""
+_IN_VAIN = 4
+"""After so many questions in turn for which a large net became hardly smaller the others are not tried."""
+_HARDLY = 0.95
 _LEAST_S = 0.1
 _PAUSE_S = 0.1
 _LOOKS = 3
@@ -245,14 +248,23 @@ class Structural(threading.Thread):
             self._pass(_PASSES_S[0])
         if len(still) > _FEW and took * len(still) > self._left() / 3:
             return
+        in_vain = 0
         for i, q in enumerate(still):
+            if took * (len(still) - i) > 1.0 and in_vain == _IN_VAIN:
+                return
             if not q.is_done and q.smaller is not None:
                 share = max(0.3, self._left() / (2 * (len(still) - i)))
-                self._reduce(q, q.smaller.tables, q.smaller.condition, share)
+                is_of_use = self._reduce(q, q.smaller.tables, q.smaller.condition, share)
+                in_vain = 0 if is_of_use else in_vain + 1
 
-    def _reduce(self, q: Question, tables: Tables, condition: Condition, seconds: float) -> None:
+    def _reduce(self, q: Question, tables: Tables, condition: Condition, seconds: float) -> bool:
+        """The net for a question; False: that of others is hardly larger, and they keep it together."""
         reduced = reduced_for(tables, [condition], until=time.monotonic() + seconds)
+        before = None if q.smaller is None else q.smaller.tables
+        if before is tables and _is_hardly_smaller(reduced.tables, before):
+            return False
         self._note(q, reduced, condition)
+        return True
 
     def _note(self, q: Question, reduced: Reduced, condition: Condition) -> None:
         """Keep the reduced net, or answer if nothing is left to ask."""
@@ -303,17 +315,24 @@ class Structural(threading.Thread):
                 self._reduce(q, self.tables, q.condition, self._left() / 8)
             if q.is_done or q.smaller is None:
                 continue
+            equation = self._equation(q.smaller)
             until = time.monotonic() + min(seconds, self._left())
-            if self._is_exhausted(q, q.smaller, until):
+            if self._is_exhausted(q, q.smaller, equation, until):
                 self.exhausted.add(q.number)
 
-    def _is_exhausted(self, q: Question, smaller: Smaller, until: float) -> bool:
-        """Ask the state equation; whether more time would not help."""
+    def _equation(self, smaller: Smaller) -> StateEquation:
+        """That of a net, which is made once, however many questions it has."""
         if smaller.equation is None:
-            smaller.equation = self.equations.setdefault(
-                id(smaller.tables), StateEquation(smaller.tables, self.is_over)
-            )
-        equation = smaller.equation
+            key = id(smaller.tables)
+            if key not in self.equations:
+                self.equations[key] = StateEquation(smaller.tables, self.is_over)
+            smaller.equation = self.equations[key]
+        return smaller.equation
+
+    def _is_exhausted(
+        self, q: Question, smaller: Smaller, equation: StateEquation, until: float
+    ) -> bool:
+        """Ask the state equation; whether more time would not help."""
         if q.kind == "bound":
             return self._bounded(q, smaller, equation, until)
         if equation.excludes(smaller.condition, until) and not q.is_done:
@@ -355,6 +374,13 @@ class _OverError(Exception):
 def sum_value(sum_: AtMost, tables: Tables) -> int:
     """A sum in the initial marking."""
     return sum(n * tables.initial[p] for p, n in sum_.factors)
+
+
+def _is_hardly_smaller(now: Tables, before: Tables) -> bool:
+    return bool(now.pre) and (
+        len(now.initial) > _HARDLY * len(before.initial)
+        and len(now.pre) > _HARDLY * len(before.pre)
+    )
 
 
 def _decided(condition: Condition, tables: Tables) -> bool | None:

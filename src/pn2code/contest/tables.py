@@ -28,6 +28,8 @@ from pn2code.net.flat import FlatNet
 from pn2code.unfold.net import Unfolding
 from pn2code.unfold.plain import PlainNet
 
+_LONG = 1000
+"""Characters from which on a list of transitions is written as ranges."""
 MOST = 1 << 30
 """The largest number of tokens, and weight, that the engine reads (`cnative/src/tables/tables_read.c`)."""
 
@@ -44,6 +46,7 @@ class Tables:
         transitions: id of a transition in the file -> its transitions here.
         at_first: of a net without colours (uncoloured.py): what is enabled in the initial marking of the coloured one.
         enabled: that one of some transitions is enabled, in the engine's own words, once it was asked for.
+        ranges: words for what is enabled -> the same, shorter.
         written: "arcs" -> the arcs, and the same in the engine's own words, once they were asked for.
     """
 
@@ -54,6 +57,7 @@ class Tables:
     transitions: Mapping[str, tuple[int, ...]]
     at_first: frozenset[str] | None = None
     enabled: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
+    ranges: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
     written: dict[str, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self) -> bool:
@@ -99,9 +103,19 @@ class Tables:
         """The net with questions in the engine's own words, for diagrams with an order of all places."""
         initial = " ".join(map(str, self.initial))
         lines = [f"{len(self.initial)} {len(self.pre)}", initial, *self._all_arcs()]
-        lines += [str(len(questions)), *questions]
+        lines += [str(len(questions)), *map(self._shortened, questions)]
         lines += [f"order {' '.join(map(str, order))}"] if order else []
         return "\n".join(lines) + "\n"
+
+    def _shortened(self, question: str) -> str:
+        """With long lists of bindings as ranges: they are numbered one after the other."""
+        for words in list(self.enabled.values()):
+            if len(words) > _LONG and len(words) <= len(question):
+                short = self.ranges.get(words)
+                if short is None:
+                    short = self.ranges[words] = min(_as_ranges(words), words, key=len)
+                question = f"{question} ".replace(f"{words} ", f"{short} ")[:-1]
+        return question
 
     def _all_arcs(self) -> list[str]:
         """A line for each transition, all as one text: it is wanted for each task anew, and may be long."""
@@ -186,6 +200,14 @@ class Tables:
         if name not in known:
             raise FormulaError(f"the net has no `{name}`")
         return known[name]
+
+
+def _as_ranges(words: str) -> str:
+    """`enabled` with transitions in ascending order as `among`, with ranges of them."""
+    found = list(map(int, words.split()[2:]))
+    first = [i for i, t in enumerate(found) if i == 0 or t != found[i - 1] + 1]
+    ranges = [f"{found[a]} {b - a}" for a, b in zip(first, [*first[1:], len(found)], strict=True)]
+    return f"among {len(found)} {len(ranges)} {' '.join(ranges)}"
 
 
 def _arcs(tokens: Mapping[int, int]) -> str:

@@ -89,3 +89,22 @@ def test_diagrams_that_are_not_whole_are_given_up_and_whole_ones_are_told() -> N
         assert asked(None, "all of the time") == 1
         assert asked(500.0, "enough") == 1
     assert whole == ["all of the time", "enough"]
+
+
+def test_each_order_has_a_glance_before_markings_are_counted_for_longer() -> None:
+    net = processes(8)
+    for lane in Diagrams(net).sizes(100.0, 64):
+        tasks = list(lane)
+        texts = [t.text for t in tasks]
+        several = len(set(texts))
+        assert several > 3, "not only the most promising ones"
+        assert len(set(texts[:several])) == several
+        assert all(t.seconds < 5.0 for t in tasks[:several])
+        assert texts[several:] == [*texts[:3], texts[0]]
+        assert sum(t.seconds for t in tasks) <= 100.0
+        assert tasks[-1].seconds > 25.0
+
+
+def test_a_net_without_places_has_one_order_to_count_with() -> None:
+    tasks = [list(lane) for lane in Diagrams(Tables((), (), (), {}, {})).sizes(10.0, 64)]
+    assert [len(lane) for lane in tasks] == [1, 0]
