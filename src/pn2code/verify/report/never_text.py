@@ -6,9 +6,11 @@ never(net, found, control)      # Never("the cell", ("Sup'Extra 1",))
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, Role
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.result import Exploration
 
@@ -43,14 +45,22 @@ class Never:
 
 
 def never(net: FlatNet, found: Exploration, control: Control | None) -> Never | None:
-    """Those of the cell as it runs, if all of it was seen, else of the net; None: nobody knows."""
-    names = EngineNames(net)
+    """Those of the cell as it runs, if all of it was seen, else of the net; None: nobody knows.
+
+    Not those that were added for a register: nobody has drawn them.
+    """
     own = control.dead if control is not None else None
     if own is not None:
-        return Never("the cell", tuple(map(names.transition, own)))
+        return _named(net, "the cell", own)
     where = "the net" if control is None else "the closed net"
     if found.known is not None:
-        return Never(where, tuple(map(names.transition, found.known.never)))
+        return _named(net, where, found.known.never)
     if not found.seen.markings or not found.knows_dead_transitions:
         return None
-    return Never(where, tuple(map(names.transition, found.dead_transitions())))
+    return _named(net, where, found.dead_transitions())
+
+
+def _named(net: FlatNet, where: str, transitions: Iterable[int]) -> Never:
+    names = EngineNames(net)
+    drawn = [t for t in transitions if net.transitions[t].role is Role.OWN]
+    return Never(where, tuple(map(names.transition, drawn)))
