@@ -120,7 +120,9 @@ def application(
 
     async def index(request: Request) -> Response:
         until = time.monotonic() + PATIENCE_S
-        while (made := show()) is None and not hall.is_over and time.monotonic() < until:
+        while (made := show()) is None and time.monotonic() < until:
+            if hall.is_over or hall.is_leaving:
+                break
             await asyncio.sleep(_LOOK_S)
         if made is None:
             return HTMLResponse(PREPARING, headers={"content-security-policy": _CLOSED})
