@@ -346,8 +346,8 @@ def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
         elif place.colset.timed:
             what += ", or the time of a token does"
             so = (
-                "so that there is no end of markings (`--reduce time` counts those that differ in the time alone as "
-                "one)"
+                "so that there is no end of markings (`--reduce time`, where it is possible, counts those that differ "
+                "in the time alone as one)"
             )
         yield (
             f"place `{place.name}` has held {count:,} different multi-sets of tokens: {what}, {so}"
