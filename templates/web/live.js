@@ -69,6 +69,7 @@ class LivePage extends ReplayPage {
     this.sides?.update(this.latest.update, this.latest.pages, this.course.steps);
     if (this.latest.update.hand) this.hand?.update(this.latest.update.hand);
     if (this.latest.update.verdict) this.ended(this.latest.update.verdict);
+    /** @type {LiveClock} */ (this.clock).follow();
     this.update();
   }
 

@@ -62,6 +62,10 @@ export class LiveClock extends Clock {
    */
   grow(end) {
     this.end = Math.max(this.end, end);
+  }
+
+  /** All has what is new: who wants nothing to move by itself sees it at once. */
+  follow() {
     if (this.isLive && isStill()) this.to(this.end);
   }
 

@@ -33,8 +33,7 @@ def told(
         return says, (
             f"in the net a token there is for one of its readers, whoever takes it first; if all are to have it, {EACH}"
         )
-    setting = {i for i in writers | readers if not only_looks(net, place, owners[i])}
-    looking = (writers | readers) - setting
+    setting, looking = _divided(net, place, owners, writers | readers)
     if len(setting) != 1 or not looking:
         return None
     says = (
@@ -47,6 +46,22 @@ def told(
         f"{EACH}; a reader takes it into a place of its own, and looks there. What the supervisor sets can be a "
         "register (docs/cookbook.md, `A value that several read`)"
     )
+
+
+def is_register(
+    net: FlatNet, place: int, owners: Sequence[Owner], writers: set[int], readers: set[int]
+) -> bool:
+    """Whether the supervisor sets what others only look at: arguments as for `told`."""
+    setting, looking = _divided(net, place, owners, writers | readers)
+    return setting == {SUPERVISOR} and bool(looking)
+
+
+def _divided(
+    net: FlatNet, place: int, owners: Sequence[Owner], users: set[int]
+) -> tuple[set[int], set[int]]:
+    """Those of its users that set the value of a place, and those that only look at it."""
+    setting = {i for i in users if not only_looks(net, place, owners[i])}
+    return setting, users - setting
 
 
 def _names(owners: Sequence[Owner], which: Iterable[int]) -> str:

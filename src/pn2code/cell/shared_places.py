@@ -237,6 +237,9 @@ def report_undeclared(
             f"`{owners[i].name}`" for i in sorted(writers[place.index] | readers[place.index])
         )
         kind = "flag" if is_one_value(place.colset) else "data"
+        puts, looks = writers[place.index], readers[place.index]
+        if looked_at.is_register(net, place.index, owners, puts, looks):
+            kind = "register"
         d.error(
             codes.CHANNEL_UNDECLARED,
             f"place `{place.name}` is shared by {who}, but is not a channel",

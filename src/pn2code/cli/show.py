@@ -159,7 +159,7 @@ def _gltf(shown: Json, form: Format) -> bytes:
 
 def _sentence(shown: Json, size: int) -> str:
     steps = shown["course"]["steps"]
-    arms = len((shown.get("cell") or {}).get("robots", ()))
+    arms = sum(not r.get("device") for r in (shown.get("cell") or {}).get("robots", ()))
     with_arms = f", {arms} arm{'s' * (arms != 1)}" if arms else ""
     return f"{steps:,} step{'s' * (steps != 1)}{with_arms}, {size / 1e6:.1f} MB"
 

@@ -14,8 +14,9 @@ from pathlib import Path
 
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.base.frozen import frozen
+from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.net.engine_names import EngineNames
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import ArcKind, FlatNet, Role
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.report import element
 from pn2code.semantics.game.token_game import Game, GameError
@@ -170,8 +171,9 @@ def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = 
         for t, owner in zip(game.net.transitions, partition.transition_owner, strict=True)
         if owner in stand and lacks_messages_alone(game, partition, t)
     }
-    others = [t for t in game.net.transitions if t.index not in waiting]
+    others = [t for t in game.net.transitions if t.index not in waiting and t.role is Role.OWN]
     programs, near = [stand[k] for k in sorted(stand)], why_disabled.reasons(game, others)
+    near += _other_end(game, partition)
     room = len(programs) if most is None else max(most - len(near), 1)
     if len(programs) > room:
         rest = len(programs) - max(room - 1, 1)
@@ -179,6 +181,34 @@ def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = 
             f"And {_count_of(rest, 'program')} more: `--full` says what each waits for."
         ]
     return [*near, *programs]
+
+
+def _other_end(game: Game, partition: Partition) -> list[str]:
+    """The place in which the supervisor has ended, where nobody takes a token away, but which is not said to be final.
+
+    Nothing where there is no one such place, or the cell has come to its end.
+    """
+
+    def holds(place: int) -> bool:
+        return any(True for _ in game.marking.places[place])
+
+    if any(holds(p) for p in partition.final_places):
+        return []
+    net, first = game.net, game.own_initial_marking.places
+    used = {a.place for t in net.transitions for a in t.arcs if a.kind is not ArcKind.OUTPUT}
+    put = {
+        a.place
+        for t, owner in zip(net.transitions, partition.transition_owner, strict=True)
+        if owner == SUPERVISOR
+        for a in t.arcs
+    }
+    ends = [p for p in put - used if holds(p) and not any(True for _ in first[p])]
+    if len(ends) != 1:
+        return []
+    return [
+        f"Nothing takes the token of `{net.places[ends[0]].short}` away: if the cell may end there, add this place to "
+        "`final` in [supervisor] of cell.toml."
+    ]
 
 
 def _figures(found: Exploration) -> str:
@@ -316,8 +346,8 @@ def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
         elif place.colset.timed:
             what += ", or the time of a token does"
             so = (
-                "so that there is no end of markings (`--reduce time` counts those that differ in the time alone as "
-                "one)"
+                "so that there is no end of markings (`--reduce time`, where it is possible, counts those that differ "
+                "in the time alone as one)"
             )
         yield (
             f"place `{place.name}` has held {count:,} different multi-sets of tokens: {what}, {so}"

@@ -63,6 +63,18 @@ class _NotSymmetricError(Exception):
         self.why = why
 
 
+def _hint(net: FlatNet) -> str:
+    """What else there is: nothing for a net that `--unfold` refuses for its time or its priorities."""
+    kept = ["times"] if any(p.colset.timed for p in net.places) else []
+    kept += ["priorities"] if len({t.priority for t in net.transitions}) > 1 else []
+    if kept:
+        return (
+            f"nets in PNML have no {' and no '.join(kept)}, and `--unfold` needs a net without: verify the net itself "
+            "instead"
+        )
+    return "`--unfold` writes a place/transition net, if finitely many colours can come into the places"
+
+
 @frozen
 class _Sort:
     """A colour set as a sort: its id; `colset` is looked through to what it is."""
@@ -105,7 +117,7 @@ class _Writer:
             UNSUPPORTED_IN_PNML,
             f"{what} cannot be written as a symmetric net: {why}",
             origin,
-            hint="`--unfold` writes a place/transition net, if finitely many colours can come into the places",
+            hint=_hint(self.net),
         )
 
     # --- the page --------------------------------------------------------------------------------

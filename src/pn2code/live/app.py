@@ -10,6 +10,8 @@ person may interfere with the run, `{"do": "join", "token": ...}` and then `{"do
 from __future__ import annotations
 
 import asyncio
+import base64
+import hashlib
 import json
 import secrets
 import time
@@ -29,14 +31,18 @@ from pn2code.replay.served import Served
 MOST_PAGES = 64
 MOST_WISH = 2000
 """Characters: with what is around it, it goes through a pipe in one piece."""
+_AGAIN = "setTimeout(() => location.reload(), 1000);"
+"""What `<meta http-equiv="refresh">` does not do where the address has a token behind its `#`."""
 PREPARING = (
-    '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="1">'
-    "<title>pn2code</title></head><body><p>The cell is being built. This page comes by itself.</p></body></html>"
+    '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>pn2code</title></head>'
+    "<body><p>The cell is being built. This page comes by itself.</p>"
+    f"<script>{_AGAIN}</script></body></html>"
 )
-PATIENCE_S = 60.0
+PATIENCE_S = 2.0
 """A page that is asked for before it is there waits so long."""
 _LOOK_S = 0.1
-_CLOSED = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+_OWN = base64.b64encode(hashlib.sha256(_AGAIN.encode()).digest()).decode()
+_CLOSED = f"default-src 'none'; script-src 'sha256-{_OWN}'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 _WRONG_S = 0.5
 """After a wrong token."""
 
@@ -120,7 +126,9 @@ def application(
 
     async def index(request: Request) -> Response:
         until = time.monotonic() + PATIENCE_S
-        while (made := show()) is None and not hall.is_over and time.monotonic() < until:
+        while (made := show()) is None and time.monotonic() < until:
+            if hall.is_over or hall.is_leaving:
+                break
             await asyncio.sleep(_LOOK_S)
         if made is None:
             return HTMLResponse(PREPARING, headers={"content-security-policy": _CLOSED})

@@ -32,6 +32,7 @@ class Hall:
         is_over: there will be no more.
         pages: that are open now.
         has_failed: there will be no more, though the run goes on.
+        is_leaving: the server ends, whatever the run does: who waits for its page is not kept waiting.
     """
 
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
@@ -44,6 +45,7 @@ class Hall:
         self._more: asyncio.Event | None = None
         self.is_over = False
         self.has_failed = False
+        self.is_leaving = False
         self.pages = 0
 
     def attach(self) -> None:
@@ -72,6 +74,10 @@ class Hall:
         """There is no more, because of a mistake here: pages say so, and can still stop the run."""
         self.has_failed = True
         self._wake()
+
+    def leave(self) -> None:
+        """The server ends; pages that are open see that their connection does."""
+        self.is_leaving = True
 
     async def ended(self) -> None:
         """Waits until it is over."""

@@ -142,7 +142,7 @@ def main(arguments: list[str]) -> None:
 
     server = Server(start, things(), stop, rest, say)
     with socket.socket(fileno=int(arguments[0])) as listening:
-        serve(server.app, listening, begun=lambda: None, fed=server.begin)
+        serve(server.app, listening, begun=lambda: None, fed=server.begin, ended=server.hall.leave)
     # After SIGTERM the thread that feeds it still waits for input, which the end of an interpreter takes for a fault.
     os._exit(0)
 

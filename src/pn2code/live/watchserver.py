@@ -78,5 +78,5 @@ def serve_watch(
         threading.Thread(target=feed, args=(end,), daemon=True).start()
         begun()
 
-    serve(Guard(inner, token, port), on, begun=lambda: None, fed=fed)
+    serve(Guard(inner, token, port), on, begun=lambda: None, fed=fed, ended=hall.leave)
     return not failed

@@ -63,6 +63,7 @@ def serve(
     *,
     begun: Callable[[], None],
     fed: Callable[[Callable[[], None]], None] | None = None,
+    ended: Callable[[], None] = lambda: None,
 ) -> None:
     """Answers until SIGINT or SIGTERM comes; a second one does not wait for what is going on.
 
@@ -72,6 +73,7 @@ def serve(
         begun: is called when pages can be opened.
         fed: for a server that ends when somebody says so, and not by SIGINT: is called with what ends it (from any
             thread) when pages can be opened.
+        ended: is called when it begins to end: whoever keeps requests waiting lets them go then.
     """
     import uvicorn
 
@@ -90,6 +92,7 @@ def serve(
     server = _Server(config)
     server.begun = begun
     server.fed = fed
+    server.ended = ended
     asyncio.run(server.play(on))
 
 
@@ -101,6 +104,7 @@ def _server_class() -> Any:
 
         begun: Callable[[], None]
         fed: Callable[[Callable[[], None]], None] | None
+        ended: Callable[[], None]
 
         @contextmanager
         def capture_signals(self) -> Iterator[None]:
@@ -116,6 +120,7 @@ def _server_class() -> Any:
         def _end(self) -> None:
             self.force_exit = self.should_exit
             self.should_exit = True
+            self.ended()
 
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)

@@ -199,3 +199,18 @@ def test_promela_has_no_priorities(tmp_path: Path) -> None:
         d = Diagnostics()
         assert emit(d) is None
         assert "another priority" in d.errors[0].message
+
+
+@pytest.mark.parametrize(
+    ("net", "hint"),
+    [
+        ("place P : T = ()", "nets in PNML have no times, and `--unfold` needs a net without"),
+        ("place P : INT = 1", "`--unfold` writes a place/transition net"),
+    ],
+)
+def test_what_else_there_is(net: str, hint: str) -> None:
+    """Nobody is sent to `--unfold` that refuses the net as well."""
+    d = Diagnostics()
+    text = f"net N\n  standard\n  colset T = unit timed;\n  page Top\n    {net}\n"
+    assert pnml_symmetric.emit(cpn_net(text), d, title="net") is None
+    assert [(e.hint or "").startswith(hint) for e in d.errors] == [True]

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL
-from pn2code.net.flat import ArcKind, BindEquation, BindStep, BindTerm, FlatTransition
+from pn2code.net.flat import ArcKind, BindEquation, BindStep, BindTerm, FlatTransition, Role
 from pn2code.net.uses import NetVariables, pattern_variables
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.token_game import Game, GameError
@@ -34,6 +34,8 @@ def supervisor_waits(game: Game, partition: Partition) -> str:
         is_supervisor = partition.owners[index].kind is OwnerKind.SUPERVISOR
         if (
             is_supervisor
+            and t.role
+            is Role.OWN  # that of a register waits all the time, and for nothing that is missing
             and missing
             and all(_holds(game, p) for p in own)
             and _fits(game, t, missing)
