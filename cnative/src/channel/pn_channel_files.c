@@ -76,6 +76,8 @@ static bool fail_errno(const char *doing, const char *name, int error)
         advice = "; make room there, or choose another directory with --dir";
     } else if ((error == EROFS) || (error == EACCES) || (error == EPERM)) {
         advice = "; choose a directory that can be written with --dir";
+    } else if ((error == ELOOP) || (error == ENXIO) || (error == EISDIR) || (error == EAGAIN) || (error == EINVAL)) {
+        advice = "; it is a link, a pipe, a folder or the like, not a file";
     } else {
         /* the system's words say it */
     }
