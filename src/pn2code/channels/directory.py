@@ -339,9 +339,11 @@ class SharedDirectory(Closing):
         try:
             _write_new(temporary, text.encode("latin-1"))
             temporary.replace(self.path / file)
-        except OSError:
+        except OSError as problem:
             with suppress(OSError):
                 temporary.unlink()
+            if problem.filename is None:  # a full disk is found when the file is open
+                problem.filename = str(self.path / file)
             raise
 
     def _take_lock(self) -> None:

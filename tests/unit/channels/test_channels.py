@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import socket
@@ -365,6 +366,21 @@ def test_what_is_no_file_holds_nobody_up(
             assert not isinstance(found[0], BlockingIOError), "that says: another process is robot1"
             assert str(found[0].filename).endswith(name)
             assert "not a file" in str(found[0])
+
+
+def test_a_full_disk_is_said_with_the_name_of_the_file(
+    parties: tuple[SharedDirectory, SharedDirectory], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is found by a write, of which the system tells no name."""
+    _, b = parties
+
+    def full(_path: Path, _data: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("pn2code.channels.directory._write_new", full)
+    with pytest.raises(OSError, match="No space left") as raised:
+        b.write("answer", (1,))
+    assert str(raised.value.filename).endswith("answer.robcad")
 
 
 def test_a_status_is_read_no_further_than_it_can_be_long(

@@ -33,6 +33,8 @@ typedef struct peer_state {
     double due;           /* s, on the cell's clock (wall time, or lock-step's): if it owes, late after that */
     const char *owes_for; /* the flag's file */
     bool idle_end;        /* it has finished although it owes, seen once: its last message may still be on its way */
+    bool known;           /* it has announced itself in this session */
+    double gone_since;    /* wall time, s: if it is known, since when its status file says nothing; else 0 */
 } peer_state_t;
 
 static struct {
@@ -256,6 +258,21 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
 
 /* --- the peers (I8, I9) ------------------------------------------------------------------------------------------- */
 
+/* Without its status file nobody would notice that a peer dies (I8). */
+static bool look_for_status(sup_t *sup, const char *name, peer_state_t *peer)
+{
+    if (!peer->known) {
+        return true; /* it has not come yet */
+    }
+    if (peer->gone_since <= 0.0) {
+        peer->gone_since = wall_time();
+    }
+    if (!sup->options.lockstep && (wall_time() - peer->gone_since < GRACE_S)) {
+        return true;
+    }
+    return sup_stop(sup, SUP_EXIT_PEER, "the status file of %s has gone or cannot be understood", name);
+}
+
 static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
 {
     const char *const name = sup->cell->peer[index].name;
@@ -274,9 +291,13 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
         }
         peer->idle_end = peer->owes;
         break;
-    case PN_PARTY_ABSENT:
+    case PN_PARTY_ABSENT: good = look_for_status(sup, name, peer); break;
     case PN_PARTY_RUNNING:
     default: break;
+    }
+    if (party->state != PN_PARTY_ABSENT) {
+        peer->known = true;
+        peer->gone_since = 0.0;
     }
     if (good && peer->owes && (sup->t > peer->due)) {
         good = sup_stop(
