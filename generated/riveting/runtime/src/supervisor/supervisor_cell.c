@@ -19,6 +19,8 @@
 static const double GRACE_S = SUP_GRACE_S; /* I6: how long a refused file may stay as it is */
 static const double LOOK_S = 0.1;          /* I8: how often the peers are looked at */
 
+static const uint32_t GONE_LOOKS = 6U; /* a status file that says nothing may do so for GRACE_S: five looks */
+
 /* What the host knows of a channel. */
 typedef struct channel_state {
     bool pending; /* in: its message is a token that has not been consumed */
@@ -33,8 +35,7 @@ typedef struct peer_state {
     double due;           /* s, on the cell's clock (wall time, or lock-step's): if it owes, late after that */
     const char *owes_for; /* the flag's file */
     bool idle_end;        /* it has finished although it owes, seen once: its last message may still be on its way */
-    bool known;           /* it has announced itself in this session */
-    double gone_since;    /* wall time, s: if it is known, since when its status file says nothing; else 0 */
+    uint32_t looks;       /* 0: it has not announced itself yet; 1: it has; above: so often in vain since */
 } peer_state_t;
 
 static struct {
@@ -258,21 +259,6 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
 
 /* --- the peers (I8, I9) ------------------------------------------------------------------------------------------- */
 
-/* Without its status file nobody would notice that a peer dies (I8). */
-static bool look_for_status(sup_t *sup, const char *name, peer_state_t *peer)
-{
-    if (!peer->known) {
-        return true; /* it has not come yet */
-    }
-    if (peer->gone_since <= 0.0) {
-        peer->gone_since = wall_time();
-    }
-    if (!sup->options.lockstep && (wall_time() - peer->gone_since < GRACE_S)) {
-        return true;
-    }
-    return sup_stop(sup, SUP_EXIT_PEER, "the status file of %s has gone or cannot be understood", name);
-}
-
 static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
 {
     const char *const name = sup->cell->peer[index].name;
@@ -291,14 +277,16 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
         }
         peer->idle_end = peer->owes;
         break;
-    case PN_PARTY_ABSENT: good = look_for_status(sup, name, peer); break;
+    case PN_PARTY_ABSENT:
+        peer->looks += (peer->looks > 0U) ? 1U : 0U;
+        if (peer->looks > (sup->options.lockstep ? 1U : GONE_LOOKS)) { /* nobody would notice that it dies */
+            good = sup_stop(sup, SUP_EXIT_PEER, "the status file of %s has gone or cannot be understood", name);
+        }
+        break;
     case PN_PARTY_RUNNING:
     default: break;
     }
-    if (party->state != PN_PARTY_ABSENT) {
-        peer->known = true;
-        peer->gone_since = 0.0;
-    }
+    peer->looks = (party->state == PN_PARTY_ABSENT) ? peer->looks : 1U;
     if (good && peer->owes && (sup->t > peer->due)) {
         good = sup_stop(
             sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, sup->options.reply_timeout_s,
