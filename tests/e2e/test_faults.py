@@ -455,7 +455,8 @@ def test_a_folder_in_place_of_a_file(cell: Cell, children: list[Child]) -> None:
         file.mkdir()
         children += [cell.robot(name) for name in ROBOTS]
         assert [child.wait() for child in children] == [RobotExit.SYSTEM, RobotExit.SUPERVISOR]
-        ended(supervisor, 3, f"the shared directory fails at `{file}`: is a directory")
+        words = "it is a link, a pipe, a folder or the like, not a file"
+        ended(supervisor, 3, f"the shared directory fails at `{file}`: {words}")
 
 
 # --- the shared directory: removed, full, missing, read-only ---

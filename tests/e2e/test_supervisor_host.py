@@ -577,6 +577,48 @@ def test_i6_a_missing_file_stops_safely(
     ended(supervisor, 4, "answer.robcad", "missing")
 
 
+def put_strange(kind: str, path: Path) -> None:
+    """Something that is no file."""
+    path.unlink(missing_ok=True)
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "folder":
+            path.mkdir()
+        case _:
+            path.symlink_to(path.with_name("supervisor.status"))
+
+
+NO_FILE = "it is a link, a pipe, a folder or the like, not a file"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
+def test_i6_what_is_no_file_stops_safely(
+    start: Callable[..., SupervisorProcess], robot: SharedDirectory, shared: Path, kind: str
+) -> None:
+    supervisor = start()
+    assert robot.await_supervisor(DEADLINE_S)
+    put_strange(kind, shared / "answer.robcad")
+    if kind == "pipe":  # which is empty, as no message is
+        ended(supervisor, 4, "answer.robcad", "an empty line")
+    else:
+        ended(supervisor, 5, "answer.robcad", NO_FILE)
+
+
+@pytest.mark.parametrize("kind", ["pipe", "folder", "link"])
+@pytest.mark.parametrize("name", [".command.robcad.supervisor.tmp", "supervisor.status"])
+def test_i7_what_is_no_file_is_said_at_the_start(
+    start: Callable[..., SupervisorProcess], shared: Path, kind: str, name: str
+) -> None:
+    """A pipe would hold up who opens it to write, until somebody reads."""
+    if kind == "link":
+        (shared / "other").touch()
+        (shared / name).symlink_to("other")
+    else:
+        put_strange(kind, shared / name)
+    ended(start(), 5, "supervisor.status" if "status" in name else "command.robcad", NO_FILE)
+
+
 # --- I7 ---
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -139,6 +140,30 @@ def statuses_that_nobody_understands(lab: Lab) -> None:
         (shared / "robot1.status").write_text(f"stopped\n{sides[1].session} 7\n{'why ' * 200}\n")
         stopped(supervisor, shared, 3, "robot1 stopped: why why why")
         del lock
+
+
+@situation
+def a_status_file_that_goes(lab: Lab) -> None:
+    """Once a robot has come: nobody would notice any more that it dies. In real time it may come back for a while."""
+    said = "the status file of robot2 has gone or cannot be understood"
+    with cell(lab, 2) as (supervisor, shared, _):
+        assert supervisor.step(0.5).stopped is None, "now both have been seen"
+        (shared / "robot2.status").unlink()
+        stopped(supervisor, shared, 3, said)
+    folder = lab.fresh()
+    (folder / "orders.txt").write_text("2\n")
+    with lab.started("odd.deployed", folder, reply_timeout_s=6000.0) as supervisor:
+        shared = folder / "shared"
+        with SharedDirectory(shared, "robot2", SPECS) as side:
+            assert side.await_supervisor(600.0)
+            while supervisor.running:  # it may not have looked before
+                (shared / "robot2.status").rename(shared / "elsewhere")
+                for _ in range(20):
+                    time.sleep(0.1 if supervisor.running else 0.0)
+                (shared / "elsewhere").rename(shared / "robot2.status")
+                time.sleep(0.3)
+        end = supervisor.wait(600.0)
+        Done(end.code, "", end.stderr, shared).stopped(3, said)
 
 
 @situation

@@ -65,6 +65,10 @@ __attribute__((format(printf, 2, 3))) static bool fail(bool io, const char *form
     return false;
 }
 
+/* Errors of what is no file: a link, a pipe that nobody reads, a folder, a pipe. As bits: they are small numbers. */
+static const uint64_t NO_FILE =
+    (1ULL << (uint32_t)ELOOP) | (1ULL << (uint32_t)ENXIO) | (1ULL << (uint32_t)EISDIR) | (1ULL << (uint32_t)EINVAL);
+
 /* A failed call on a file of the directory: says whether it is the whole directory. */
 static bool fail_errno(const char *doing, const char *name, int error)
 {
@@ -76,6 +80,8 @@ static bool fail_errno(const char *doing, const char *name, int error)
         advice = "; make room there, or choose another directory with --dir";
     } else if ((error == EROFS) || (error == EACCES) || (error == EPERM)) {
         advice = "; choose a directory that can be written with --dir";
+    } else if (((NO_FILE >> ((uint32_t)error & 63U)) & 1U) != 0U) {
+        advice = "; it is a link, a pipe, a folder or the like, not a file";
     } else {
         /* the system's words say it */
     }

@@ -219,7 +219,7 @@ static int write_all(int fd, const char *data, size_t length)
 
 int pn_port_prepare(int directory, const char *temporary, const char *data, size_t length, int *file)
 {
-    const int fd = openat(directory, temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW,
+    const int fd = openat(directory, temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW,
                           S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
     if (fd < 0) {
         return errno;

@@ -19,6 +19,8 @@
 static const double GRACE_S = SUP_GRACE_S; /* I6: how long a refused file may stay as it is */
 static const double LOOK_S = 0.1;          /* I8: how often the peers are looked at */
 
+static const uint32_t GONE_LOOKS = 6U; /* a status file that says nothing may do so for GRACE_S: five looks */
+
 /* What the host knows of a channel. */
 typedef struct channel_state {
     bool pending; /* in: its message is a token that has not been consumed */
@@ -33,6 +35,7 @@ typedef struct peer_state {
     double due;           /* s, on the cell's clock (wall time, or lock-step's): if it owes, late after that */
     const char *owes_for; /* the flag's file */
     bool idle_end;        /* it has finished although it owes, seen once: its last message may still be on its way */
+    uint32_t looks;       /* 0: it has not announced itself yet; 1: it has; above: so often in vain since */
 } peer_state_t;
 
 static struct {
@@ -275,9 +278,15 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
         peer->idle_end = peer->owes;
         break;
     case PN_PARTY_ABSENT:
+        peer->looks += (peer->looks > 0U) ? 1U : 0U;
+        if (peer->looks > (sup->options.lockstep ? 1U : GONE_LOOKS)) { /* nobody would notice that it dies */
+            good = sup_stop(sup, SUP_EXIT_PEER, "the status file of %s has gone or cannot be understood", name);
+        }
+        break;
     case PN_PARTY_RUNNING:
     default: break;
     }
+    peer->looks = (party->state == PN_PARTY_ABSENT) ? peer->looks : 1U;
     if (good && peer->owes && (sup->t > peer->due)) {
         good = sup_stop(
             sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, sup->options.reply_timeout_s,

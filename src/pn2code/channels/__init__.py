@@ -11,6 +11,7 @@ from pn2code.channels.directory import (
     Status,
     StatusFile,
     Written,
+    read_at_once,
     read_status,
 )
 from pn2code.channels.message import (
@@ -40,6 +41,7 @@ __all__ = [
     "Status",
     "StatusFile",
     "Written",
+    "read_at_once",
     "read_status",
     "is_empty",
     "scalars_of",

@@ -14,9 +14,12 @@ fails (removed, full, read-only); nothing is left half-written then.
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
+import re
 import secrets
+import stat
 import time
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -28,6 +31,7 @@ from pn2code.base.closing import Closing
 from pn2code.base.frozen import frozen, record
 from pn2code.channels.message import (
     EMPTY,
+    MAX_BYTES,
     MAX_PAYLOAD,
     ChannelSpec,
     Message,
@@ -46,6 +50,8 @@ LOOK_S = 0.1
 """I8: how often the other side's lock and status are looked at."""
 
 _AWAIT_S = 0.005
+
+_PID = re.compile(r"[0-9]{1,18}")
 
 
 class Status(Enum):
@@ -314,7 +320,7 @@ class SharedDirectory(Closing):
 
     def _content(self, spec: ChannelSpec) -> str | Refused:
         try:
-            data = (self.path / spec.file).read_bytes()
+            data = read_at_once(self.path / spec.file, MAX_BYTES)
         except FileNotFoundError:
             if not self.path.is_dir():
                 raise
@@ -331,11 +337,13 @@ class SharedDirectory(Closing):
     def _publish(self, file: str, text: str) -> None:
         temporary = self.path / f".{file}.{self.side}.tmp"
         try:
-            temporary.write_bytes(text.encode("latin-1"))
+            _write_new(temporary, text.encode("latin-1"))
             temporary.replace(self.path / file)
-        except OSError:
+        except OSError as problem:
             with suppress(OSError):
                 temporary.unlink()
+            if problem.filename is None:  # a full disk is found when the file is open
+                problem.filename = str(self.path / file)
             raise
 
     def _take_lock(self) -> None:
@@ -348,7 +356,7 @@ class SharedDirectory(Closing):
         Raises:
             BlockingIOError: another process holds the lock.
         """
-        fd = os.open(self._status_path(self.side), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        fd = _open(self._status_path(self.side), os.O_RDWR | os.O_CREAT)
         try:
             for attempt in range(20):  # somebody may just be probing it
                 try:
@@ -372,7 +380,7 @@ class SharedDirectory(Closing):
 
     def _is_locked(self, side: str) -> bool:
         try:
-            fd = os.open(self._status_path(side), os.O_RDONLY | os.O_CLOEXEC)
+            fd = _open(self._status_path(side), os.O_RDONLY)
         except FileNotFoundError:
             return False
         try:
@@ -387,15 +395,55 @@ class SharedDirectory(Closing):
         return read_status(self._status_path(side))
 
 
+def read_at_once(path: Path, most: int) -> bytes:
+    """The first bytes of a file, without waiting: a pipe in its place holds nobody up, and no link is followed.
+
+    Raises:
+        OSError: it cannot be read, or is no file.
+    """
+    fd = _open(path, os.O_RDONLY)
+    try:
+        return os.read(fd, most)
+    finally:
+        os.close(fd)
+
+
+def _open(path: Path, flags: int) -> int:
+    """Opens a file as the supervisor does (port_posix.c): without waiting, following no link.
+
+    Raises:
+        OSError: it cannot be opened, or is no file.
+    """
+    not_a_file = "it is a link, a pipe, a folder or the like, not a file"
+    try:
+        fd = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+    except OSError as problem:
+        if problem.errno in (errno.ELOOP, errno.ENXIO, errno.EISDIR):
+            raise OSError(problem.errno, not_a_file, str(path)) from None
+        raise
+    if not stat.S_ISREG(os.fstat(fd).st_mode):
+        os.close(fd)
+        raise OSError(errno.EINVAL, not_a_file, str(path))
+    return fd
+
+
+def _write_new(path: Path, data: bytes) -> None:
+    """As `read_at_once`."""
+    fd = _open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    with os.fdopen(fd, "wb", buffering=0) as stream:
+        while data:
+            data = data[stream.write(data) :]
+
+
 def read_status(path: Path) -> StatusFile | None:
     """What a status file says; None: it is not there, is being written, or is none."""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = read_at_once(path, MAX_BYTES).decode("utf-8", errors="replace")
     except FileNotFoundError:
         return None
     lines = [*text.split("\n"), "", "", ""]
     words = lines[1].split()
     if len(words) != 2:
         return None  # being written, or not ours
-    pid = int(words[1]) if words[1].isascii() and words[1].isdigit() else None
+    pid = int(words[1]) if _PID.fullmatch(words[1]) else None
     return StatusFile(lines[0], words[0], pid, lines[2])

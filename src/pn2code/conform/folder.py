@@ -3,12 +3,14 @@
 found = compare(folder, fresh, d)      # Folder(files=47, edited=("robot1.tdl",), ...); None: a file is missing
 
 Programs that were edited are compared by what they do. Everything else (the runtime, the Makefile, the manifest, copies
-of input files) has to be what is generated, byte for byte: nothing else would tell what an edit of it does. A file that
-nobody generated is foreign; one that `make` or the C compiler would take for a part of the programs must not be there.
+of input files, and in cell_config.c its memory) has to be what is generated: nothing else would tell what an edit of it
+does. A file that nobody generated is foreign; one that `make` or the C compiler would take for a part of the programs
+must not be there.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,9 +22,23 @@ from pn2code.emission.output import OutputFile
 
 PROGRAM = ("net.c", "net.h", "cell_config.c")
 """The supervisor's own files."""
+_CONFIG = "cell_config.c"
 _NET = ("net.c", "net.h")
 _MAKEFILES = ("GNUmakefile", "makefile")
 """What `make` reads before `Makefile`."""
+_COMMENT = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\])*")', re.DOTALL)
+_TOKEN = re.compile(r'\w+|"(?:\\.|[^"\\])*"|\S')
+_UNASKED = (
+    r"\bunion \{[^}]*\} s_marking ;",
+    r"\bs_fired_of \[[^;]*;",
+    r"\bs_arena \[[^;]*;",
+    r"\. arena = [^,]*,",
+    r"\. arena_size = [^,]*,",
+    r"\. room = \{[^}]*\}",
+    r"\. needs = \{[^}]*\}",
+    r"\bdefine \w+|\bundef \w+",
+)
+"""Patterns of tokens, with a blank between two."""
 
 
 @frozen
@@ -86,10 +102,23 @@ def compare(
             )
             return None
         if data != f.text.encode("utf-8"):
-            (edited if is_program(f.path) else differing).append(f.path)
+            is_asked = is_program(f.path) and not (
+                f.path == _CONFIG and _unasked(programs[-1].text) != _unasked(f.text)
+            )
+            (edited if is_asked else differing).append(f.path)
     intruding, foreign = _others(folder, frozenset(f.path for f in fresh))
     found = Folder(len(fresh), tuple(edited), tuple(differing), intruding, foreign)
     return found, tuple(programs)
+
+
+def _unasked(text: str) -> list[list[str]]:
+    """What cell_config.c says of its memory and of what is linked, without comments and blanks.
+
+    No state shows it: a timer that is never waited for fires some time later, memory that is never cleaned up is used
+    up some day, and a counter beyond the end of its array destroys what is stored behind.
+    """
+    code = " ".join(_TOKEN.findall(_COMMENT.sub(lambda m: m[1] or " ", text)))
+    return [re.findall(pattern, code) for pattern in _UNASKED]
 
 
 def intruding(folder: Path, fresh: Sequence[OutputFile]) -> tuple[str, ...]:

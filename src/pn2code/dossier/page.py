@@ -77,6 +77,7 @@ def index(chapters: Sequence[Chapter], facts: Facts) -> str:
         bad=_about(chapters, NO),
         unknown=_about(chapters, OPEN),
         assumed=assumed,
+        moves=any(c.done.step.is_geometry and c.done.code is not None for c in chapters),
         idle=[e for e in transitions if e.occurred and not any(e.occurred)],
         transitions=len(transitions),
         by_line=by_line(facts.elements),

@@ -18,7 +18,7 @@ from enum import Enum
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.channels import ChannelSpec, StatusFile, read_status
+from pn2code.channels import ChannelSpec, StatusFile, read_at_once, read_status
 
 MOST_BYTES = 8192
 """Of a file that are read: twice as many as a message may have."""
@@ -133,8 +133,7 @@ class Eye:
 
     def _text(self, file: str) -> str | None:
         try:
-            with (self._folder / file).open("rb") as stream:
-                return stream.read(MOST_BYTES).decode("latin-1")
+            return read_at_once(self._folder / file, MOST_BYTES).decode("latin-1")
         except OSError:
             return None
 

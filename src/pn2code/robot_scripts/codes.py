@@ -40,7 +40,8 @@ UNSUPPORTED_COLSET = register(
     "a robot page uses a colour set that scripts do not have",
     "Places of a robot may hold units, booleans, integers, times, reals, strings, enumerations, and "
     "records and products of these. A record of six reals named x y z rx ry rz is a pose. There may be lists of "
-    "anything of these but units and records other than poses.",
+    "booleans, integers, times, reals, strings, enumerations and poses (x y z rx ry rz in this order); lists of "
+    "lists, units, products and other records belong on the supervisor's pages.",
 )
 CHOICE = register(
     "robot-choice",

@@ -88,8 +88,8 @@ class Data:
                     places[p].origins[0],
                     notes=[f"{self.machine.owner.phrase} uses the place"],
                     hint="use units, booleans, integers, times, reals, strings, enumerations, "
-                    "records and products of these, and lists of anything of these but units and records other than "
-                    "poses (`x`, `y`, `z`, `rx`, `ry`, `rz`)",
+                    "records and products of these, and lists of booleans, integers, times, reals, strings, "
+                    "enumerations or poses (records of six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order)",
                 )
                 return False
             if is_file and _has_unit(places[p].colset):

@@ -74,7 +74,7 @@ def end_problem(game: Game, line: Mapping[str, Any], ending: Ending) -> str | No
     return _final_problem(game, line, ending) or (
         _simulated(game, why, ending) or _loop_problem(line, ending) or _clock_problem(game, line)
         if ending.is_simulated
-        else _run(game, why, ending)
+        else _run(game, line, why, ending)
     )
 
 
@@ -109,11 +109,15 @@ def _simulated(game: Game, why: str, ending: Ending) -> str | None:
     return f'it says "{why}", which is no reason for a run to end'
 
 
-def _run(game: Game, why: str, ending: Ending) -> str | None:
+def _run(game: Game, line: Mapping[str, Any], why: str, ending: Ending) -> str | None:
     if why in (*GOES_ON, ERROR):
         return f'it says "{why}", which only simulators say'
     if (ending.by, why) == (VERIFY, EVIDENCE):
-        return None
+        return _loop_problem(line, ending)
+    if "loop" in line:
+        return "it says that the run repeats for ever, which only simulators and `verify` can know"
+    if why == FINISHED and "reason" in line:
+        return "it gives a reason why the run did not finish, but says that it did"
     if why not in RUN_ENDS and (ending.by == RUN or not _may_be_told(why)):
         return _alone(game, why, ending)
     if why != FINISHED or not ending.parties.is_known:
@@ -218,19 +222,47 @@ def _loop_problem(line: Mapping[str, Any], ending: Ending) -> str | None:
         first = ending.markings[loop]
     except LookupError:
         return f"it says that the run repeats from step {loop} on; the file has changed while it was read"
-    if _relative(first) != _relative(ending.markings[last]):
+    after = ending.markings[last]
+    is_back = _relative(first) == _relative(after) or (
+        not ending.is_simulated and _comes_back(first, after, line.get("t"))
+    )
+    if not is_back:
         return (
             f"it says that the run repeats from step {loop} on, but the marking there is different"
         )
     return None
 
 
+def _comes_back(first: Marking, last: Marking, end: object) -> bool:
+    """Whether a cycle of a cell comes back: one that is compared at the time of the last line.
+
+    A marking has the time of the step before it, and the cycle may have begun later: when its next stamp is as far away
+    as it is at the end, or when none is left.
+    """
+    now = end if is_number(end) and end > last.time else last.time
+    last = replace(last, time=now)
+    ahead = min((s - now for s in _stamps(last) if s > now), default=None)
+    stamps = _stamps(first)
+    begun = [s - ahead for s in stamps] if ahead is not None else [max([first.time, *stamps])]
+    return any(
+        _relative(replace(first, time=t)) == _relative(last)
+        for t in [first.time, *begun]
+        if first.time <= t <= now
+    )
+
+
+def _stamps(marking: Marking) -> list[int | float]:
+    """Of all tokens, each once."""
+    timed = (tokens for tokens in marking.places if isinstance(tokens, TimedMultiSet))
+    return sorted({t.stamp for tokens in timed for t in tokens})
+
+
 def _relative(marking: Marking) -> Marking:
-    """Stamps counted from the marking's time; what is over is over."""
+    """Stamps counted from the marking's time, real ones to 9 decimals; what is over is over."""
     places: list[PlaceMarking] = []
     for tokens in marking.places:
         if isinstance(tokens, TimedMultiSet):
-            left = (Timed(t.value, max(t.stamp - marking.time, 0)) for t in tokens)
+            left = (Timed(t.value, max(round(t.stamp - marking.time, 9), 0)) for t in tokens)
             places.append(TimedMultiSet.of(left))
         else:
             places.append(tokens)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import errno
 import math
+import os
+import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -297,6 +302,101 @@ def test_missing_file(parties: tuple[SharedDirectory, SharedDirectory]) -> None:
     assert isinstance(found, Refused)
     assert found.reason is Reason.MISSING
     assert isinstance(a.write("command", (1,)), NotWritten)
+
+
+STRANGE = ("pipe", "link to a pipe", "link", "folder", "socket")
+
+
+def put_strange(kind: str, path: Path) -> None:
+    """Something in the place of a file that none of the parties has put there."""
+    path.unlink(missing_ok=True)
+    beside = path.with_name(f"{path.name}.beside")
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "link to a pipe":
+            os.mkfifo(beside)
+            path.symlink_to(beside)
+        case "link":
+            beside.write_text("0\n")
+            path.symlink_to(beside)
+        case "folder":
+            path.mkdir()
+        case _:
+            with socket.socket(socket.AF_UNIX) as server:
+                server.bind(
+                    os.path.relpath(path)
+                )  # a longer name than 100 characters has no socket
+
+
+@pytest.mark.parametrize("kind", STRANGE)
+def test_what_is_no_file_holds_nobody_up(
+    parties: tuple[SharedDirectory, SharedDirectory],
+    kind: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each is said, with the name of the file; a thread that never comes back would be a robot that does not stop."""
+    monkeypatch.chdir(tmp_path)
+    a, b = parties
+    names = ("command.robcad", ".answer.robcad.robot1.tmp", "supervisor.status")
+    calls: tuple[Callable[[], object], ...] = (
+        lambda: b.read("command"),
+        lambda: b.write("answer", (1,)),
+        b.peer,
+    )
+    for name, call in zip(names, calls, strict=True):
+        with tempfile.TemporaryDirectory(dir=tmp_path) as kept:
+            if (a.path / name).exists():
+                (a.path / name).rename(Path(kept) / name)
+            put_strange(kind, a.path / name)
+            found: list[object] = []
+
+            def carry_out(call: Callable[[], object] = call, found: list[object] = found) -> None:
+                try:
+                    found.append(call())
+                except OSError as problem:
+                    found.append(problem)
+
+            thread = threading.Thread(target=carry_out, daemon=True)
+            thread.start()
+            thread.join(20.0)
+            assert found, f"{name} as a {kind}: nothing for 20 s"
+            assert isinstance(found[0], OSError), found
+            assert not isinstance(found[0], BlockingIOError), "that says: another process is robot1"
+            assert str(found[0].filename).endswith(name)
+            assert "not a file" in str(found[0])
+
+
+def test_a_full_disk_is_said_with_the_name_of_the_file(
+    parties: tuple[SharedDirectory, SharedDirectory], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is found by a write, of which the system tells no name."""
+    _, b = parties
+
+    def full(_path: Path, _data: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("pn2code.channels.directory._write_new", full)
+    with pytest.raises(OSError, match="No space left") as raised:
+        b.write("answer", (1,))
+    assert str(raised.value.filename).endswith("answer.robcad")
+
+
+def test_a_status_is_read_no_further_than_it_can_be_long(
+    parties: tuple[SharedDirectory, SharedDirectory],
+) -> None:
+    a, b = parties
+    path = a.path / "supervisor.status"
+    path.write_text(f"running\n{a.session} {'1' * 5000}\n\n")
+    assert b.peer().pid is None
+    with path.open("r+b") as stream:
+        stream.truncate(1 << 40)  # a hole; nobody has memory for all of it
+    assert b.peer().pid is None
+    with (a.path / "command.robcad").open("r+b") as stream:
+        stream.truncate(1 << 40)
+    found = b.read("command")
+    assert isinstance(found, Refused) and found.reason is Reason.SHAPE
 
 
 def test_i7_nobody_is_awaited_in_vain(tmp_path: Path) -> None:

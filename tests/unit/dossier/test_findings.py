@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from pn2code.dossier.findings import NO, NOTED, OPEN, YES, read, worst
-from pn2code.dossier.steps import Done, Step
+from pn2code.dossier.page import Facts, index
+from pn2code.dossier.steps import GEOMETRY, Done, Step
 
 PROPERTY = {"name": "p", "says": "", "holds": "deadlock free", "expect": True, "why": None}
 NET = {"complete": True, "nodes": 3, "arcs": 2, "why": "complete"}
@@ -202,3 +203,19 @@ def test_seconds_are_told_where_they_were_measured(tmp_path: Path) -> None:
     assert c.findings[1].says == "best 10 s, worst no upper bound"
     none = {**NET, "properties": [], "durations": {"why": "the net is timed", "layouts": []}}
     assert chapter(tmp_path, "verify", none).answer == OPEN
+
+
+@pytest.mark.parametrize(
+    ("code", "claimed"), [(0, True), (1, True), (None, False)], ids=["looked at", "no", "left out"]
+)
+def test_moves_of_arms_are_claimed_where_they_were_looked_at(
+    code: int | None, claimed: bool, tmp_path: Path
+) -> None:
+    """Nothing is said of arms where there are none, nor where `check` has stopped the report before it."""
+    facts = Facts("cell", "today", (), (), (), (), {}, {}, ())
+    check = chapter(tmp_path, "check", None)
+    swept = read(Done(Step("Geometry", "check", (GEOMETRY,), "x.json"), code, why="y"), tmp_path)
+    words = "and about the moves of its arms"
+    assert (words in index([check, swept], facts)) is claimed
+    alone = index([check], facts)
+    assert words not in alone and "has made of the net of cell and about their model;" in alone

@@ -769,6 +769,42 @@ def test_what_is_no_sequential_program_is_refused_with_its_reason(
     assert all(x.origin.line for x in cell.d.errors)
 
 
+LISTS = {
+    "INT": True,
+    "STRING": True,
+    "KIND": True,
+    "POSE6": True,
+    "INTS": False,
+    "PAIR": False,
+    "PROD": False,
+    "UNIT": False,
+    "ESOP": False,
+}
+"""Colour sets, and whether there are lists of them; what is said beside a refusal has to agree."""
+
+
+@pytest.mark.parametrize("element", LISTS)
+def test_lists_that_there_are_are_those_that_are_proposed(tmp_path: Path, element: str) -> None:
+    extra = """colset INTS = list INT;
+colset KIND = with red | green;
+colset PAIR = record a : INT * b : INT;
+colset PROD = product INT * INT;
+colset POSE6 = record x : REAL * y : REAL * z : REAL * rx : REAL * ry : REAL * rz : REAL;
+colset ESOP = record rx : REAL * ry : REAL * rz : REAL * x : REAL * y : REAL * z : REAL;
+colset ITEMS = list ELEMENT;
+var items : ITEMS;""".replace("ELEMENT", element)
+    robot = "place A : ITEMS = 1`[]\ntrans T\n  both A : items"
+    found = Cell(tmp_path, robot, extra=extra)
+    assert (found.ir is not None) is LISTS[element]
+    if not LISTS[element]:
+        [error] = found.d.errors
+        assert error.code == "unsupported-robot-colset"
+        assert error.hint.endswith(
+            "lists of booleans, integers, times, reals, strings, enumerations or poses (records of "
+            "six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order)"
+        )
+
+
 def test_a_delay_without_stamps_says_which_colour_set_has_them(tmp_path: Path) -> None:
     """And what it proposes is accepted."""
     robot = "place A = 1\nplace B : INT\ntrans T delay @+3\n  in A\n  in x : n\n  out B : n"

@@ -319,6 +319,60 @@ def test_a_lasso_comes_back(loop: int, ok: bool) -> None:
     assert replay_lines(written, net).ok is ok
 
 
+@pytest.mark.parametrize(("loop", "ok"), [(1, True), (4, True), (0, False), (2, False), (9, False)])
+def test_a_lasso_of_a_cell_comes_back(loop: int, ok: bool) -> None:
+    net = flat(LOOP)
+    head, *steps, last = trace(Game(net), steps=4)
+    end = changed(last, loop=loop, why="evidence")
+    assert replay_lines([changed(head, by="verify"), *steps, end], net).ok is ok
+
+
+TICKS = """
+    net Ticks
+      standard
+      colset TINT = int timed;
+      var n: INT;
+      page Top
+        place P : TINT = 1`0 @ 2
+        place Q : INT = 1`0
+        trans Tick
+          in P : 0
+          out P : 0@+4
+          in Q : n
+          out Q : 1 - n
+"""
+
+
+@pytest.mark.parametrize(
+    ("loop", "end", "ok"),
+    [(1, 10, True), (0, 14, True), (0, 9, True), (0, 7, False), (1, 14, True), (2, 10, False)],
+)
+def test_a_lasso_of_a_timed_cell_comes_back_at_the_time_of_its_end(
+    loop: int, end: int, ok: bool
+) -> None:
+    """The cycle may begin between two steps: what is left of each delay then is left at the end as well."""
+    net = flat(TICKS)
+    written = list(trace(Game(net), steps=2 if loop == 0 else 3))
+    told = changed(written[-1], loop=loop, why="evidence", t=end)
+    assert replay_lines([changed(written[0], by="verify"), *written[1:-1], told], net).ok is ok
+
+
+@pytest.mark.parametrize("by", ["run", "supervisor"])
+def test_only_who_knows_says_that_a_run_repeats_for_ever(net: FlatNet, by: str) -> None:
+    written = lines(net)
+    told = [changed(written[0], by=by), *written[1:2]]
+    stopped = changed(written[-1], why="stopped")
+    assert replay_lines([*told, stopped], net).ok
+    assert "for ever" in refused(net, [*told, changed(stopped, loop=0)]).why
+
+
+def test_who_has_finished_has_no_reason_not_to(net: FlatNet) -> None:
+    written = lines(net)
+    end = {"t": 9.0, "event": "end", "why": "finished", "final": ["Top.Done"], "reason": "stuck"}
+    run = [changed(written[0], by="run", digest="d"), written[1], json.dumps(end)]
+    assert "says that it did" in refused(net, run, parties=cell(net)).why
+
+
 def cell(net: FlatNet) -> Parties:
     """One program runs the whole net and has finished when there is a token in `Top.Done`."""
     (final,) = (p.index for p in net.places if p.name == "Top.Done")
