@@ -44,7 +44,7 @@ def meet(page: Deaf) -> None:
     with ThreadPoolExecutor(1) as worker:
         player = SimpleNamespace(again=dict)
         page.seat = SimpleNamespace(player=player, worker=worker, name="seat")
-        hall = app._Hall(SimpleNamespace())  # type: ignore[arg-type]
+        hall = app._Hall(SimpleNamespace(), None)  # type: ignore[arg-type]
         there = hall._at(page, page.seat, True)  # type: ignore[arg-type]
         asyncio.run(asyncio.wait_for(there, PATIENCE_S))
 

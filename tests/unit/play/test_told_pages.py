@@ -191,7 +191,7 @@ def test_a_page_that_is_loaded_again_while_something_goes_on_is_told_everything(
         player.answer({"do": "fire", "transition": 0})
 
     async def reload(worker: ThreadPoolExecutor) -> Reloaded:
-        page, hall = Reloaded(), app._Hall(SimpleNamespace())  # type: ignore[arg-type]
+        page, hall = Reloaded(), app._Hall(SimpleNamespace(), None)  # type: ignore[arg-type]
         worker.submit(going_on)
         seat: Any = SimpleNamespace(player=player, worker=worker, name="seat")
         playing = asyncio.create_task(hall._at(page, seat, False))  # type: ignore[arg-type]

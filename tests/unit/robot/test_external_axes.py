@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import tomllib
 from dataclasses import replace
@@ -14,6 +15,7 @@ import pytest
 
 from helpers.robot_cells import nowhere, pose_mm
 from pn2code.diagnostics import Diagnostics
+from pn2code.replay.arrays import unpacked
 from pn2code.replay.cell import describe
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.carried import WithAxes
@@ -335,7 +337,8 @@ def test_a_plate_is_part_of_the_kinematics() -> None:
 
 def test_the_replay_page_gets_joints_that_slide() -> None:
     """The page multiplies frames as here (`templates/web/kinematics.js`)."""
-    (robot,) = describe(CELL)["robots"]
+    described = describe(CELL)
+    (robot,) = described["robots"]
     q = np.array(LEFT.home) + 0.3
     frames = {0: np.array(robot["base"]).reshape(4, 4)}
     for joint in robot["joints"]:
@@ -352,7 +355,9 @@ def test_the_replay_page_gets_joints_that_slide() -> None:
     assert [j["moves"] for j in robot["joints"] if j.get("slides")] == [0]
     numbers = {x["name"]: i for i, x in enumerate(robot["links"])}
     assert np.abs(frames[numbers["plate"]] - plate_at(q[7])).max() < 1e-7
-    assert len(robot["links"][numbers["plate"]]["visuals"]) == 2
+    glb = unpacked(described["glb"]).astype(np.uint8).tobytes()
+    nodes = json.loads(glb[20 : 20 + int.from_bytes(glb[12:16], "little")])["nodes"]
+    assert len(nodes[robot["links"][numbers["plate"]]["node"]]["children"]) == 2
 
 
 @pytest.mark.parametrize("frame", ["world", "seam"])
