@@ -1,7 +1,8 @@
 /* A C compiler that remembers: what was compiled before, from the same sources in the same way, is a copy.
  *
  * It stands before the compiler in PATH, under its name. `helpers/remembering_cc.py` compiles it, and tells it where
- * the compiler is (COMPILERS), what it is (VERSION), and where objects are kept (STORE).
+ * the compiler is and by which of its names it is known (COMPILERS), what it is (VERSION), and where objects are kept
+ * (STORE).
  *
  * An object depends on the compiler, on the arguments but for the name of the object, and on all files that were read,
  * which the compiler says itself (-MD), and on that no others of their names are found before them. For the compiler, the arguments and the source there is a list of the files that
@@ -42,12 +43,11 @@ static const char *const BAD_VARIABLES[] = {
 static const char *const KNOWN[] = { "-I", "-D", "-U", "-O",    "-W",        "-std=",
                                      "-f", "-g", "-m", "-pipe", "-pedantic", "-pthread" };
 
-/* Those of them that write other files, read some that are not named, or mean this machine. */
+/* Those of them that write other files, or read some that are not named. What -march=native means is a part of VERSION. */
 static const char *const OTHERS[] = {
-    "-Wp,",          "-Wa,",          "-Wl,",          "-fprofile", "-ftest-coverage",
-    "-fcallgraph",   "-fstack-usage", "-fdump",        "-fplugin",  "-fauto-profile",
-    "-flto",         "-fopt-info",    "-fsave",        "-gsplit",   "-march=native",
-    "-mtune=native", "-fmodules",     "-fdiagnostics", "-frandom",
+    "-Wp,",          "-Wa,",    "-Wl,",          "-fprofile",      "-ftest-coverage", "-fcallgraph",
+    "-fstack-usage", "-fdump",  "-fplugin",      "-fauto-profile", "-flto",           "-fopt-info",
+    "-fsave",        "-gsplit", "-mtune=native", "-fmodules",      "-fdiagnostics",   "-frandom",
 };
 
 static bool begins(const char *text, const char *with)
@@ -380,13 +380,15 @@ static int compiled(const char *compiler, int argc, char **argv, char *rule_at, 
     return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
-static const char *compiler_of(const char *called)
+/* Its path; `known_as` becomes that of the first that is the same one under another name. */
+static const char *compiler_of(const char *called, const char **known_as)
 {
     static const char *const COMPILER[] = { COMPILERS };
     const char *name = strrchr(called, '/');
     name = name != NULL ? name + 1 : called;
-    for (size_t i = 0; i < sizeof COMPILER / sizeof *COMPILER; i += 2) {
+    for (size_t i = 0; i < sizeof COMPILER / sizeof *COMPILER; i += 3) {
         if (strcmp(name, COMPILER[i]) == 0) {
+            *known_as = COMPILER[i + 2];
             return COMPILER[i + 1];
         }
     }
@@ -396,14 +398,14 @@ static const char *compiler_of(const char *called)
 
 int main(int argc, char **argv)
 {
-    const char *compiler = compiler_of(argv[0]);
+    const char *known_as, *compiler = compiler_of(argv[0], &known_as);
     Job job;
     if (is_plain(argc, argv, &job)) {
         char list[NAME], rule_at[] = STORE "/rule-XXXXXX";
         size_t size;
         char *source = contents(job.source, &size);
         if (source != NULL) {
-            take_text(&job.digest, compiler);
+            take_text(&job.digest, known_as);
             take(&job.digest, source, size);
             free(source);
             stored_name(list, "files", job.digest);

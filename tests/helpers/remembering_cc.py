@@ -30,6 +30,8 @@ MOST_BYTES = 1 << 30
 """Of objects that are kept; the ones that were not used for the longest time go first."""
 _FLAGS = (STANDARD, "-O2", "-Wall", "-Wextra", "-Werror")
 _SECONDS_LONG_AGO = 3600.0
+_NATIVE = ("-march=native", "-###", "-S", "-o", "-", "-x", "c", os.devnull)
+"""To this a compiler says for which processor it would compile."""
 
 
 def made(folder: Path, store: Path) -> Path | None:
@@ -44,7 +46,10 @@ def made(folder: Path, store: Path) -> Path | None:
         return None
     store.mkdir(parents=True, exist_ok=True)
     folder.mkdir(exist_ok=True)
-    compilers = ", ".join(f"{c_string(name)}, {c_string(path)}" for name, path in found.items())
+    compilers = ", ".join(
+        ", ".join(map(c_string, (name, path, _same(path, found.values()))))
+        for name, path in found.items()
+    )
     what = {
         "COMPILERS": compilers,
         "VERSION": c_string(_version(found.values())),
@@ -59,8 +64,22 @@ def made(folder: Path, store: Path) -> Path | None:
     return folder
 
 
+def _same(compiler: str, compilers: Iterable[str]) -> str:
+    """The first that is the same program and says the same of itself: `cc` is most often another name of `gcc`.
+
+    What goes by several names may do as it is called (`ccache`), so the program alone does not decide.
+    """
+
+    def identity(path: str) -> tuple[Path, str]:
+        # It begins with the name by which it was called.
+        return Path(path).resolve(), _said(path, "--version").partition(" ")[2]
+
+    own = identity(compiler)
+    return next(path for path in compilers if identity(path) == own)
+
+
 def _version(compilers: Iterable[str]) -> str:
-    """What they are: an object of one that was installed anew is another one."""
+    """What they are: an object of one that was installed anew, or for another machine, is another one."""
     parts = []
     for compiler in sorted(set(compilers)):
         said = _said(compiler, "--version")
@@ -71,11 +90,14 @@ def _version(compilers: Iterable[str]) -> str:
             path = Path(shutil.which(program.strip()) or program.strip()).resolve()
             about = path.stat() if path.exists() else None
             parts.append(f"{path} {about and (about.st_size, about.st_mtime_ns)} {said}")
+        parts.append(_said(compiler, *_NATIVE, at=os.sep))  # clang names the folder
     return "\n".join(parts)
 
 
-def _said(*command: str) -> str:
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+def _said(*command: str, at: str | None = None) -> str:
+    """What a program prints; a compiler says on the other stream what it would do."""
+    done = subprocess.run(command, cwd=at, capture_output=True, text=True, check=False)
+    return done.stdout or done.stderr
 
 
 def use(

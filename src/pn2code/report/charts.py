@@ -29,6 +29,7 @@ COLOURS = {
     "measure": "#CC79A7",
     "wait": "#BBBBBB",
 }
+_DPI = 110
 
 
 @frozen
@@ -187,6 +188,10 @@ def _ticks(axes: Any, values: list[float], least: float) -> None:
 
 
 def _save(figure: Any, path: Path) -> None:
+    # It is laid out here: `savefig` draws a figure that has a layout twice, the first time for nothing.
+    figure.set_dpi(_DPI)
+    figure.get_layout_engine().execute(figure)
+    figure.set_layout_engine(None)
     # No date and no version inside: the same run gives the same bytes.
-    figure.savefig(path, dpi=110, metadata={"Software": None})
+    figure.savefig(path, dpi=_DPI, metadata={"Software": None})
     plt.close(figure)

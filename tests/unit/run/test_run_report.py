@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from rich.console import Console
 
@@ -122,6 +123,33 @@ def test_charts(record: RunRecord, figures: dict[str, Figure], tmp_path: Path) -
         (line,) = (x for x in axes.get_lines() if x.get_label() == warning)
         bottom, top = axes.get_ylim()
         assert bottom < float(np.asarray(line.get_ydata())[0]) < top
+
+
+def test_charts_are_drawn_once_and_look_as_matplotlib_lays_them_out(
+    record: RunRecord, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    ours, theirs = tmp_path / "ours", tmp_path / "theirs"
+    ours.mkdir()
+    theirs.mkdir()
+    limits = charts.Limits(0.02, 50.0)
+    drawn: list[Figure] = []
+    usual = Figure.draw
+
+    def draw(figure: Figure, renderer: Any) -> None:
+        drawn.append(figure)
+        usual(figure, renderer)
+
+    with monkeypatch.context() as changed:
+        changed.setattr(Figure, "draw", draw)
+        charts.draw(record, ROBOTS, limits, ours)
+    monkeypatch.setattr(
+        charts, "_save", lambda f, path: f.savefig(path, dpi=110, metadata={"Software": None})
+    )
+    charts.draw(record, ROBOTS, limits, theirs)
+    plt.close("all")
+    for name in ("gantt.png", "clearances.png"):
+        assert (ours / name).read_bytes() == (theirs / name).read_bytes()
+    assert len(drawn) == 2
 
 
 def test_a_run_that_measures_no_clearances_has_no_empty_chart_of_them(

@@ -34,6 +34,7 @@ class Bench:
             f'#!/bin/sh\ncase " $* " in *" -c "*) echo "$*" >>{self.calls};; esac\nexec {usual} "$@"\n'
         )
         script.chmod(0o755)
+        (compilers / "cc").symlink_to("gcc")
         monkeypatch.setenv("PATH", f"{compilers}:{os.environ['PATH']}")
         monkeypatch.setattr(remembering_cc, "_FLAGS", (STANDARD, "-O0"))  # for each test anew
         found = remembering_cc.made(folder / "front", self.store)
@@ -144,7 +145,7 @@ def test_errors_are_said_each_time(bench: Bench) -> None:
     assert bench.run("-c", "nothing.c").returncode == 1
 
 
-@pytest.mark.parametrize("more", ["-MD", "--coverage", "-fstack-usage", "-save-temps", *HOST.own])
+@pytest.mark.parametrize("more", ["-MD", "--coverage", "-fstack-usage", "-save-temps"])
 def test_what_is_not_plain_the_compiler_does(bench: Bench, more: str) -> None:
     for _ in range(2):
         bench.compiled(more)
@@ -196,3 +197,35 @@ def test_what_one_compiler_has_made_is_not_anothers(bench: Bench) -> None:
         made.append((bench.at / "a.o").read_bytes())
     assert made[0] == made[1] != first
     assert len(list(bench.store.glob("*.o"))) == 2  # of each compiler one, which is copied
+
+
+def test_another_name_of_the_same_compiler_is_not_another_compiler(bench: Bench) -> None:
+    first = bench.compiled()
+    bench.compiler = bench.compiler.with_name("cc")
+    assert bench.compiled() == first
+    assert bench.count == 1
+
+
+def test_a_program_that_does_as_it_is_called_is_several_compilers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = tmp_path / "gcc"
+    script.write_text('#!/bin/sh\necho "${0##*/} version of ${0##*/}"\n')
+    script.chmod(0o755)
+    (tmp_path / "cc").symlink_to(script)
+    both = [str(tmp_path / name) for name in ("cc", "gcc")]
+    assert [remembering_cc._same(path, both) for path in both] == both
+
+
+def test_what_is_for_this_machine_is_remembered_on_it(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = bench.compiled(*HOST.own)
+    assert bench.compiled(*HOST.own) == first
+    assert bench.count == 1
+    compiler = os.fspath(shutil.which("gcc") or shutil.which("cc"))
+    here = remembering_cc._version([compiler])
+    monkeypatch.setattr(
+        remembering_cc, "_NATIVE", ("-march=x86-64-v2", *remembering_cc._NATIVE[1:])
+    )
+    assert remembering_cc._version([compiler]) != here
