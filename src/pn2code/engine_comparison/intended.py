@@ -46,6 +46,8 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`Bind` raised by what an input arc wants** (its value, coefficient or delay: `let val (x :: _) = f (n, k) in x end`), if it needs a variable `n` that has
   its value from a token or an equation and a variable `k` that has all values of its colour set, means to CPN Tools that the other values of `k` are not
   tried; here it stops the run, as any other exception. Without such a `k` there is no binding, in both; without such an `n` both stop.
+* **An arc without an orientation**, and an element inside the text of an inscription, are refused: CPN Tools writes neither, and the net could be read in
+  two ways.
 * **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
 * **Library**: of the 345 structures that the engine has in scope some 90 are there; of the others (its compiler, its inner parts, `Base64`, `GetOpt`,
   `PathUtil`, `SplayTree`, `UTF8`, ...) each function is refused by its name (`unsupported-function`). Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
