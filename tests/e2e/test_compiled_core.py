@@ -217,6 +217,62 @@ NETS: dict[str, str] = {
             in R : l
             out Q : n
     """,
+    "Bind on input arcs is no match": """
+        net Cell
+          standard
+          colset PR = product INT * STRING;
+          fun g n = let val (x :: _) = if n > 1 then [n] else [] in x end;
+          fun pair n = let val (x :: _) = if n > 1 then [(n, "a")] else [] in x end;
+          fun yes n = let val true = n > 1 in () end;
+          fun raises n = if n > 1 then n else raise Bind;
+          var n: INT;
+          place P : INT = 1`1 ++ 1`2 ++ 1`3
+          place Q : INT = 3`3 ++ 2`2 ++ 1`4
+          place S : PR = 2`(3, "a") ++ 1`(2, "b")
+          place U : UNIT = 5`()
+          place R : INT
+          trans One
+            in P : n
+            in Q : g n
+            out R : n
+          trans Two
+            in P : n
+            in Q : 1`(g n) ++ 1`(g (n + 1))
+            out R : 10 * n
+          trans Count
+            in P : n
+            in U : (g n)`()
+          trans Struct
+            in P : n
+            in S : pair n
+          trans Unit
+            in P : n
+            in U : yes n
+            out R : 100 * n
+          trans Raised guard [raises (n + 1) > 1]
+            in P : n
+            in Q : raises n
+    """,
+    "Bind in delays of input arcs is no match": """
+        net Cell
+          standard
+          colset TIM = int timed;
+          fun g n = let val (x :: _) = if n > 1 then [n] else [] in x end;
+          var n: INT;
+          var m: TIM;
+          place P : INT = 1`1 ++ 1`2 ++ 1`3
+          place Q : TIM = 1`1@2 +++ 1`3@3 +++ 1`2@9
+          place Own : TIM = 1`1@2 +++ 1`2@4
+          place R : INT
+          trans T
+            in P : n
+            in Q : m @+ g n
+            out R : n
+          trans V
+            in P : n
+            in Own : 1`1 @+ g n +++ 1`2 @+ g (n + 1)
+            out R : n
+    """,
     "lists and closures": """
         net Cell
           standard

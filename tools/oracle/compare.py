@@ -26,10 +26,12 @@ from pn2code.engine_comparison.graphs import (
     our_arcs,
     our_nodes,
 )
+from pn2code.ml.core.terms import PVar
 from pn2code.net import front
 from pn2code.net.flat import ArcKind
+from pn2code.net.uses import walk_pattern
 from pn2code.semantics.evaluation.constants import compute
-from pn2code.semantics.evaluation.effects import Effects, outside
+from pn2code.semantics.evaluation.effects import Effect, Effects, outside, texts
 from pn2code.semantics.game.graph import StateSpace, state_space
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.report import places
@@ -84,6 +86,8 @@ FUSED = Verdict(
     "engine",
     "it looks at each arc from places of one fusion set for itself, and takes too many tokens",
 )
+TWICE = Verdict("engine", "it takes a wrong binding where a variable is twice in one pattern")
+UNRESTORED = Verdict("engine", "its state space tool does not restore what references hold")
 RESETS = Verdict(
     "engine", "its state space tool does not carry out reset arcs at ports and fused places"
 )
@@ -95,7 +99,9 @@ ORDER_WARNING = "guard-order"
 SHARED_WARNING = "arcs-share-variables"
 SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
 ENTERING = "Exception raised entering state space tool"
-SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
+SUBTRACT = re.compile(
+    r"[Ee]xception Subtract (?:raised while executing .*\((\w+)\)|is raised .* transition (\w+) occured)"
+)
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
@@ -184,7 +190,21 @@ class Seen:
         """Whether the engine ends in a transition with several arcs from what is one place here."""
         found = SUBTRACT.search(message)
         assert self.net is not None
-        return found is not None and any(self._twice(found.group(1)).values())
+        return found is not None and any(self._twice(found.group(1) or "").values())
+
+    def _has_twice(self, message: str) -> bool:
+        """Whether the engine ends in a transition with a pattern in which a variable is twice."""
+        found = SUBTRACT.search(message)
+        assert self.net is not None
+        return found is not None and any(
+            len(names) > len(set(names))
+            for t in self.net.transitions
+            if t.id == found.group(1) or t.short == found.group(2)
+            for a in t.arcs
+            for term in (a.inscription.terms if a.inscription is not None else ())
+            if term.pattern is not None
+            for names in [[p.symbol for p in walk_pattern(term.pattern) if isinstance(p, PVar)]]
+        )
 
     def _twice(self, transition: str) -> dict[int, bool]:
         """The places that a transition takes from: whether over several arcs."""
@@ -271,11 +291,21 @@ class Seen:
             return ENGINE
         if self._takes_too_many(error):
             return FUSED
+        if self._has_twice(error):
+            return TWICE
         if ORDER_WARNING in self.codes:
             return ORDER
         return differs(f"the engine ends with {error}")
 
     def space(self, answer: dict[str, Any]) -> Verdict:
+        """As `_space`; what differs where references change is the engine's."""
+        found = self._space(answer)
+        if found.state != "differs" or self.net is None:
+            return found
+        changes = Effect.WRITE in Effects(self.net.program).of(*texts(self.net))
+        return UNRESTORED if changes else found
+
+    def _space(self, answer: dict[str, Any]) -> Verdict:
         """Sizes, dead and home markings and components by the compiled explorer; small graphs node by node."""
         if self.net is None or self.game is None or "nodes" not in answer:
             return NOTHING

@@ -106,9 +106,7 @@ class NetStatements(Statements):
             case ir.UnlessAvailable():
                 self._unless_available(s)
             case ir.UnlessBind():
-                self.line('if (pn_is_raised(cx, "Bind")) {')
-                self.line(f"{INDENT}pn_clear_error(cx);")
-                self._next()
+                self._unless_bind()
             case ir.UnlessHeld():
                 if s.place in self.slots:
                     text, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
@@ -139,8 +137,8 @@ class NetStatements(Statements):
                 else:
                     self.line(f"if ({self._x.tokens[place]}used > 0U) {{")
                 self._next()
-            case ir.Wanted(takes=takes):
-                self._wanted(takes)
+            case ir.Wanted():
+                self._wanted(s)
             case ir.Yield():
                 self._yield()
             case ir.Take() | ir.Put():
@@ -243,11 +241,17 @@ class NetStatements(Statements):
             self.line(f"if ({token}.stamp.{member} > {self._x.inside(s.limit, 10)}) {{")
         self._next()
 
-    def _wanted(self, takes: tuple[Stmt, ...]) -> None:
+    def _unless_bind(self) -> None:
+        self.line('if (pn_is_raised(cx, "Bind")) {')
+        self.line(f"{INDENT}pn_clear_error(cx);")
+        self._next()
+
+    def _wanted(self, s: ir.Wanted) -> None:
+        takes = s.takes
         if is_pair(takes, self.timed) and not any(
             isinstance(s, ir.Take) and s.place in self.slots for s in takes
         ):
-            self._wanted_pair(takes)
+            self._wanted_pair(s)
             return
         holds = self._scope.name(("holds", id(takes)), "holds")
         first = takes[0]
@@ -270,6 +274,8 @@ class NetStatements(Statements):
             self._work_out_wanted(takes, holds)
             self._depth -= 1
             self.line("}")
+        if s.may_bind:
+            self._unless_bind()
         self.line(f"if (!{holds}) {{")
         self._next()
 
@@ -288,8 +294,8 @@ class NetStatements(Statements):
             self.line(f"pn_arena_release(cx->arena, {mark});")
         self.moves = before
 
-    def _wanted_pair(self, takes: tuple[Stmt, ...]) -> None:
-        values = []
+    def _wanted_pair(self, wanted: ir.Wanted) -> None:
+        takes, values = wanted.takes, []
         for note in dict.fromkeys(s.note for s in takes if isinstance(s, ir.Take) and s.note):
             self.note(note)
         for s in takes:
@@ -298,7 +304,13 @@ class NetStatements(Statements):
                 place = s.place
             else:
                 self.statement(s)
-        self.line(f"if (!{self._x.call(place, 'holds', *values)}) {{")
+        test = self._x.call(place, "holds", *values)
+        if wanted.may_bind:
+            holds = self._scope.name(("holds", id(takes)), "holds")
+            self.line(f"const bool {holds} = {test};")
+            self._unless_bind()
+            test = holds
+        self.line(f"if (!{test}) {{")
         self._next()
 
     def _yield(self) -> None:

@@ -43,8 +43,11 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`Real.nextAfter`** works; SML/NJ raises `Fail`. `String.fromCString` reads up to the first character that it cannot read; SML/NJ gives `NONE`.
 * **Exceptions that functions declare** are new ones in each call; here there is one for all calls, and a net in which a call may meet the exception of
   another one is refused (`unsupported-exception`).
-* **`Bind` raised by what an input arc wants** (its value, coefficient or delay: `let val (x :: _) = f n in x end`) means to CPN Tools that there is no
-  binding, if `n` has its value from a token; here it stops the run, as any other exception.
+* **`Bind` raised by what an input arc wants** (its value, coefficient or delay: `let val (x :: _) = f (n, k) in x end`), if it needs a variable `n` that has
+  its value from a token or an equation and a variable `k` that has all values of its colour set, means to CPN Tools that the other values of `k` are not
+  tried; here it stops the run, as any other exception. Without such a `k` there is no binding, in both; without such an `n` both stop.
+* **An arc without an orientation**, and an element inside the text of an inscription, are refused: CPN Tools writes neither, and the net could be read in
+  two ways.
 * **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
 * **Library**: of the 345 structures that the engine has in scope some 90 are there; of the others (its compiler, its inner parts, `Base64`, `GetOpt`,
   `PathUtil`, `SplayTree`, `UTF8`, ...) each function is refused by its name (`unsupported-function`). Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a

@@ -215,7 +215,7 @@ class _Dump:
                 yield f"{pad}for {self._variables[s.variable].name} over {s.table}{_note(s.note)}"
                 yield from self._block(s.body, depth + 1)
             case ir.Wanted():
-                yield f"{pad}unless there is: next"
+                yield f"{pad}unless there is{' and no Bind' if s.may_bind else ''}: next"
                 yield from self._block(s.takes, depth + 1)
             case _:
                 yield pad + self._simple(s)

@@ -228,9 +228,15 @@ class UnlessEmpty:
 
 @frozen
 class Wanted:
-    """Goes on unless the marking holds all that `takes` want, together."""
+    """Goes on unless the marking holds all that `takes` want, together.
+
+    Args:
+        takes: what they want.
+        may_bind: the exception Bind may be raised, which means that they want nothing that there could be.
+    """
 
     takes: tuple[Stmt, ...]
+    may_bind: bool = False
 
 
 @frozen

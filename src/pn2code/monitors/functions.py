@@ -22,6 +22,7 @@ from pn2code.ml.core.types import label_key, record
 from pn2code.ml.elaborate import Elaborator
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.monitors.kinds import COLLECTORS, Kind, Monitor, ml_name
+from pn2code.net import generative
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.values.data import UNIT, Data, Native, Value
@@ -222,6 +223,9 @@ class _Functions:
                     self.elaborator.declarations(self.constrained(name, type_text))
                 if self.gives_tokens(inner.declarations, observed):
                     self.elaborator.declarations(self.generated(self.tokens(observed)))
+        if not self.d.has_errors:
+            declarations = (*self.flat.program.declarations, *inner.declarations)
+            generative.refuse_beside(declarations, (), self.d)
         if self.d.has_errors or any(i.code.startswith("unsupported-") for i in self.d):
             return None, ()
         symbols = {name: inner.globals[f"CPN'{name}"] for name in self.types(observed)}

@@ -14,13 +14,14 @@ the difference as long as no call of the function meets the exception of another
   or it may be, but whatever raises the exception has a handler of it around it that is in the same declaration, and no
   function that raises or handles it is given to other functions of the net.
 
-Everything else is refused, if a run can come to it. Texts of the library see to it themselves that their exceptions are
-told apart (`PropList`).
+Everything else is refused, if a run can come to it, or a text beside the net (`refuse_beside`: functions of monitors,
+conditions of properties, what is typed while one plays, bounds of colour sets). Texts of the library see to it
+themselves that their exceptions are told apart (`PropList`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
@@ -52,7 +53,7 @@ from pn2code.ml.library import declaration
 from pn2code.ml.library import names as library_names
 from pn2code.net.codes import UNSUPPORTED_EXCEPTION
 from pn2code.net.flat import FlatNet
-from pn2code.net.reached import inscriptions, reached
+from pn2code.net.reached import inscriptions, reached, reached_from
 from pn2code.net.uses import children, pattern_variables, walk, walk_pattern
 
 _STORING = frozenset({"Ref.:=", "Ref.ref", "Array.update", "Array.array", "Array.modify"})
@@ -69,12 +70,33 @@ class _Local:
 
 def refuse(net: FlatNet, d: Diagnostics) -> bool:
     """Whether any was found; each is an error."""
+    texts = [e for t in net.transitions for e in inscriptions(t)]
+    texts += [p.initial[0] for p in net.places if p.initial is not None]
+    return _refuse(net.program.declarations, texts, lambda: reached(net), d)
+
+
+def refuse_beside(declarations: Sequence[Dec], texts: Sequence[Exp], d: Diagnostics) -> bool:
+    """Whether any was found in what is evaluated beside a net; each is an error.
+
+    Args:
+        declarations: those of the net, and what was declared after them; values among them are evaluated.
+        texts: expressions that use them.
+        d: where errors go.
+    """
+    return _refuse(declarations, texts, lambda: reached_from(declarations, texts), d)
+
+
+def _refuse(
+    declarations: Sequence[Dec],
+    texts: Iterable[Exp],
+    run: Callable[[], Iterable[Exp]],
+    d: Diagnostics,
+) -> bool:
     roots: list[tuple[frozenset[Symbol], Exp]] = []
     bodies: dict[Symbol, Exp] = {}
-    for dec in net.program.declarations:
+    for dec in declarations:
         roots += _functions(dec)
-    roots += [(frozenset(), e) for t in net.transitions for e in inscriptions(t)]
-    roots += [(frozenset(), p.initial[0]) for p in net.places if p.initial is not None]
+    roots += [(frozenset(), e) for e in texts]
     local = [x for around, e in roots for x in _declared(e, around, bool(around))]
     if not local:
         return False
@@ -83,11 +105,11 @@ def refuse(net: FlatNet, d: Diagnostics) -> bool:
             if isinstance(e, Let):
                 for dec in e.declarations:
                     bodies.update(_bodies(dec))
-    for dec in net.program.declarations:
+    for dec in declarations:
         bodies.update(_bodies(dec))
     open_types = _open_types(
         [
-            *net.program.declarations,
+            *declarations,
             *(
                 dec
                 for _, root in roots
@@ -98,11 +120,11 @@ def refuse(net: FlatNet, d: Diagnostics) -> bool:
         ]
     )
     errors = len(d.errors)
-    run = {id(e) for e in reached(net)}
+    can_run = {id(e) for e in run()}
     own = {f"library/{name}.sml" for name in library_names()}
     seen: set[int] = set()
     for x in local:
-        if id(x.let) not in run or id(x.let) in seen:
+        if id(x.let) not in can_run or id(x.let) in seen:
             continue
         seen.add(id(x.let))
         for dec in x.exceptions:

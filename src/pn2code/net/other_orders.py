@@ -33,7 +33,7 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.ml.core.terms import Con, Exp, Lit, Pat, PLit, PRecord, PVar, PWild, Symbol, Var
+from pn2code.ml.core.terms import Con, Exp, Lit, Pat, PLit, PVar, PWild, Symbol, Var
 from pn2code.ml.core.terms import Sequence as Several
 from pn2code.ml.core.types import BOOL, INT
 from pn2code.ml.library.datatypes import TRUE
@@ -51,6 +51,7 @@ from pn2code.net.flat import (
     Term,
 )
 from pn2code.net.magnitudes import Magnitudes, RaisesIn
+from pn2code.net.no_match import catches, no_match_places
 from pn2code.net.outside import bind_raised, holds, is_restricted, outside
 from pn2code.net.raising import Raising
 from pn2code.net.terms import TermReader, binary
@@ -177,7 +178,7 @@ class _Maker:
         asked = conditions(t, self._raising, self._uses)
         if not any(c.may_raise for c in asked):
             return
-        sources = list(self._sources(t))
+        sources, no_match = list(self._sources(t)), no_match_places(t)
         for i, c in enumerate(asked):
             for e in self._parts(t, c) if c.may_raise else ():
                 ways = _ways(self._needed(t, e), sources)
@@ -187,7 +188,11 @@ class _Maker:
                     continue
                 for way in ways:
                     hiding = self._hiding(t, asked, i, way)
-                    is_tested = c.guard is not None and e is t.guards[c.guard]
+                    is_tested = (
+                        e is t.guards[c.guard]
+                        if c.guard is not None
+                        else c.term is not None and t.arcs[c.term[0]].place in no_match
+                    )
                     may_bind = is_tested and self._plain.raise_in(e)
                     is_open = may_bind and not any(self._catches(t, s) for s in way)
                     if hiding is None and not is_open:
@@ -205,10 +210,7 @@ class _Maker:
         """
         if s.term is None:
             return s.guard is not None
-        pattern = term_of(t, *s.term).pattern
-        return not isinstance(pattern, PRecord) or all(
-            isinstance(x, PVar) for _, x in pattern.fields
-        )
+        return catches(term_of(t, *s.term).pattern)
 
     def _outside_of(self, t: FlatTransition) -> Iterator[tuple[FlatTransition | None, Question]]:
         sources: list[_Source] = []

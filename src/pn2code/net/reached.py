@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from pn2code.diagnostics import Diagnostic, Origin
 from pn2code.ml.codes import UNSUPPORTED_BUILTIN
-from pn2code.ml.core.terms import Builtin, Exp, Lambda, RecBind, Symbol, ValBind, Var
+from pn2code.ml.core.terms import Builtin, Dec, Exp, Lambda, RecBind, Symbol, ValBind, Var
 from pn2code.ml.library.builtins import BUILTINS
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.net.uses import pattern_variables, walk
@@ -15,15 +15,7 @@ from pn2code.net.uses import pattern_variables, walk
 def reached(net: FlatNet) -> Iterator[Exp]:
     """Every expression that a run of the net can come to: of inscriptions, initial markings, code segments, of the
     declarations that they use, and of those that are evaluated at the start."""
-    declared: dict[Symbol, Exp] = {}
     todo: list[Exp] = []
-    for dec in net.program.declarations:
-        if isinstance(dec, ValBind):
-            declared.update(dict.fromkeys(pattern_variables(dec.pattern), dec.value))
-            if not isinstance(dec.value, Lambda):
-                todo.append(dec.value)
-        elif isinstance(dec, RecBind):
-            declared.update(dec.bindings)
     for place in net.places:
         if place.initial is not None:
             todo.append(place.initial[0])
@@ -31,6 +23,21 @@ def reached(net: FlatNet) -> Iterator[Exp]:
         todo += [e for e in (colset.members, colset.predicate) if e is not None]
     for t in net.transitions:
         todo += inscriptions(t)
+    yield from reached_from(net.program.declarations, todo)
+
+
+def reached_from(declarations: Iterable[Dec], texts: Iterable[Exp]) -> Iterator[Exp]:
+    """Every expression that evaluating some can come to, and the declarations that they use or that are evaluated
+    themselves."""
+    declared: dict[Symbol, Exp] = {}
+    todo = list(texts)
+    for dec in declarations:
+        if isinstance(dec, ValBind):
+            declared.update(dict.fromkeys(pattern_variables(dec.pattern), dec.value))
+            if not isinstance(dec.value, Lambda):
+                todo.append(dec.value)
+        elif isinstance(dec, RecBind):
+            declared.update(dec.bindings)
     seen: set[int] = set()
     while todo:
         root = todo.pop()

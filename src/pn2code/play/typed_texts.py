@@ -18,6 +18,7 @@ from pn2code.diagnostics import Diagnostic, Diagnostics, Origin, SourceText
 from pn2code.ml.core.terms import Exp
 from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
+from pn2code.net import generative
 from pn2code.net.check import typed_marking
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition, Form
 from pn2code.net.instance_numbers import numbered
@@ -119,6 +120,8 @@ class Typist:
             source = _source(text if text.strip() else "empty", "initial marking")
             found = typed_marking(self._elaborator, source, place.colset)
             exp, form = _good(found, d)
+            if generative.refuse_beside(self._net.program.declarations, [exp], d):
+                raise BadText(tuple(d.sorted()))
             return (
                 numbered(exp, place.instance_number, self._elaborator.another),
                 form,
@@ -126,7 +129,7 @@ class Typist:
             )
 
     def _marks(self, d: Diagnostics) -> Marks:
-        return Marks(self._net, self._elaborator, Names(self._net, d))
+        return Marks(self._net, self._elaborator, Names(self._net, d), d)
 
     @contextmanager
     def _aside(self) -> Iterator[Diagnostics]:

@@ -66,7 +66,7 @@ class Binder:
         self._is_cell = is_cell
         self._d = d
         self.names = Names(net, d)
-        self._marks = Marks(net, elaborator, self.names)
+        self._marks = Marks(net, elaborator, self.names, d)
         self._elaborator = elaborator
         self._properties: list[m.Property] = []
         self._predicates: list[Predicate] = []

@@ -16,6 +16,7 @@ from pn2code.ml.core.terms import Exp, Symbol, Var
 from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
 from pn2code.ml.parsing import syntax as s
+from pn2code.net import generative
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.net.predicate import marking_type
 from pn2code.net.uses import walk
@@ -36,11 +37,13 @@ class Marks:
         net: the net.
         elaborator: knows its declarations.
         names: resolves the names of places.
+        d: where errors go that are found after typing.
     """
 
     net: FlatNet
     elaborator: Elaborator
     names: Names
+    d: Diagnostics
     _symbols: dict[int, Symbol] = field(default_factory=dict)
 
     def symbol(self, place: int) -> Symbol:
@@ -55,13 +58,17 @@ class Marks:
         """The typed condition and the places it looks at; None after a diagnostic."""
         used: dict[int, Symbol] = {}
         exp = self.elaborator.condition(text, self._prepare(used))
-        return None if exp is None else (exp, _looks(used))
+        return None if exp is None or self._is_refused(exp) else (exp, _looks(used))
 
     def expression(self, text: SourceText) -> tuple[Exp, Type, Looks] | None:
         """An expression of any type, its type, and the places it looks at; None after a diagnostic."""
         used: dict[int, Symbol] = {}
         found = self.elaborator.evaluation(text, self._prepare(used))
-        return None if found is None else (*found, _looks(used))
+        return None if found is None or self._is_refused(found[0]) else (*found, _looks(used))
+
+    def _is_refused(self, exp: Exp) -> bool:
+        """Whether it may use exceptions of functions in a way that is not possible here."""
+        return generative.refuse_beside(self.net.program.declarations, [exp], self.d)
 
     def _prepare(
         self, used: dict[int, Symbol]
@@ -97,7 +104,7 @@ class Marks:
         """A typed condition on the variables of a transition; None after a diagnostic."""
         declared = {symbol.name: symbol for symbol in t.variables}
         exp = self.elaborator.condition(text, lambda parsed: (parsed, declared))
-        if exp is None:
+        if exp is None or self._is_refused(exp):
             return None
         late = {symbol.uid for symbol in t.code.outputs} if t.code else set()
         for part in walk(exp):

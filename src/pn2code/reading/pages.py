@@ -323,7 +323,16 @@ class PageReader:
             return None
         self.check_text(node, base)
         text = node.child("text")
-        if text is None or not text.text.strip():
+        if text is None:
+            return None
+        for inner in text.children:
+            self.d.error(
+                CPN_ELEMENT,
+                f"the text of the {part} has an element `{inner.tag}` in it, so that it is not known what it is",
+                inner.at(base),
+                hint="an element `text` holds text alone; `<` is written `&lt;`",
+            )
+        if not text.text.strip():
             return None
         origin = Origin(
             base.file, text.line, text.column, base.page, base.element, base.element_id, part

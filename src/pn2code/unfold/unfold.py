@@ -23,7 +23,7 @@ from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import PVar, Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.evaluate import Evaluator, match
-from pn2code.semantics.game.enabling import Enabling, GameError
+from pn2code.semantics.game.enabling import Enabling, GameError, NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Value
@@ -149,7 +149,13 @@ class _Search(Enabling):
         self.faults: list[tuple[FlatTransition, GameError]] = []
 
     def _match_tokens(
-        self, arc: FlatArc, index: int, marking: Marking, found: dict[int, Value], free: bool
+        self,
+        t: FlatTransition,
+        arc: FlatArc,
+        index: int,
+        marking: Marking,
+        found: dict[int, Value],
+        free: bool,
     ) -> Iterator[dict[int, Value]]:
         assert arc.inscription is not None
         pattern = arc.inscription.terms[index].pattern
@@ -263,6 +269,8 @@ class _Closure:
         self.progress(self.count, len(self.elements))
         try:
             demands = self.search.demands(t, binding)
+        except NoMatchError:
+            return
         except GameError as error:
             self.fault(t, binding, error, {})
             return

@@ -101,6 +101,19 @@ def test_bind_before_any_token(guard: str, arcs: str, is_raised: bool) -> None:
     assert bool(asked(guard, arcs)) == is_raised
 
 
+@pytest.mark.parametrize(
+    ("arcs", "is_raised"),
+    [
+        ("P : l|D : (2, l)|A : first l", True),  # the engine stops: it finds the token of `D`
+        ("P : l|A : first l", False),
+        ("D : (m, l)|A : first l", False),
+        ("P : l|A : 1`n ++ 1`(first l)", False),
+    ],
+)
+def test_bind_of_what_an_arc_wants(arcs: str, is_raised: bool) -> None:
+    assert bool(asked("", arcs)) == is_raised
+
+
 def test_check_does_not_call_that_an_order() -> None:
     for guard in ("s = n + 5", "first [] > 0"):
         net = flat(NET % (f" guard [{guard}]", "      in A : n"))

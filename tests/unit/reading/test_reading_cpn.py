@@ -399,3 +399,14 @@ def test_an_element_of_another_name_is_told_what_it_is_called(written: str, mean
     _, d = parse(wrap(f"<trans id='t'><{written}><text>[false]</text></{written}></trans>"))
     assert [x.code for x in d] == ["cpn-unknown-element"]
     assert f"write it as an element `{meant}`" in (d.items[0].hint or "")
+
+
+@pytest.mark.parametrize(
+    "text", ["1`2<b/> ++ 1`3", "1`2<b> ++ 1`7</b>", "<b>1`2 ++</b> 1`3", "<b/>"]
+)
+def test_an_element_inside_a_text(text: str) -> None:
+    """It is not known what such a text is: what stands in the element would be left out."""
+    place = f"<place id='a'><initmark><text>{text}</text></initmark></place>"
+    _, d = parse(wrap(place))
+    assert [x.code for x in d.errors] == ["cpn-element"]
+    assert "initial marking" in d.errors[0].message and "`b`" in d.errors[0].message

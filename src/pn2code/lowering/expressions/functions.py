@@ -571,7 +571,9 @@ def _is_impure_node(e: core.Exp) -> bool:
 
 
 def has_refutable_binding(e: core.Exp) -> bool:
-    """Whether it is a `let` with a pattern that may not fit."""
+    """Whether it is a `let` with a pattern that may not fit, or the exception `Bind` itself."""
+    if isinstance(e, core.Con):
+        return e.constructor.data_type == "exn" and e.constructor.name == "Bind"
     return isinstance(e, core.Let) and any(
         isinstance(d, core.ValBind) and not is_irrefutable(d.pattern) for d in e.declarations
     )

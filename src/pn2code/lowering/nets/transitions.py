@@ -36,6 +36,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.no_match import no_match_places
 from pn2code.net.total import is_total
 
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
@@ -143,6 +144,7 @@ class _Enumeration:
         self._demands: list[_Demand] = []
         self._found: set[tuple[int, int]] = set()
         self._done = False
+        self._no_match = no_match_places(t)
         self._computed: list[tuple[FlatArc, Term]] = []
 
     def run(self) -> tuple[Stmt, ...]:
@@ -263,9 +265,12 @@ class _Enumeration:
         if timed and count > 1:
             with self._body.block() as takes:
                 take_terms(self._program, self._net, self._body, arc, self._env, [term])
-            self._body.emit(ir.Wanted(tuple(takes)))
+            self._body.emit(ir.Wanted(tuple(takes), self._may_bind(arc, term)))
             return
         limit = _limit(self._program, self._body, term.delay, self._env, timed)
+        if limit is not None and self._may_bind(arc, term):
+            limit = self._body.spill(limit, "limit")
+            self._body.emit(ir.UnlessBind())
         self._body.emit(ir.UnlessAvailable(arc.place, index, limit, count))
 
     def _match(self, pattern: core.Pat, value: Ir, note: str, colset: Colset | None = None) -> None:
@@ -341,7 +346,12 @@ class _Enumeration:
         with self._body.block() as takes:
             for d in demands:
                 take_terms(self._program, self._net, self._body, d.arc, self._env, [d.term])
-        self._body.emit(ir.Wanted(tuple(takes)))
+        may_bind = any(self._may_bind(d.arc, d.term) for d in demands)
+        self._body.emit(ir.Wanted(tuple(takes), may_bind))
+
+    def _may_bind(self, arc: FlatArc, term: Term) -> bool:
+        """Whether what it wants may raise `Bind`, which then means that there is no binding."""
+        return arc.place in self._no_match and any(map(self._program.may_raise_bind, parts(term)))
 
     def _draws(self, term: Term) -> bool:
         return any(self._program.is_impure(x) for x in parts(term))
@@ -356,6 +366,11 @@ class _Enumeration:
             timed = self._net.places[arc.place].colset.timed
             limit = _limit(self._program, self._body, term.delay, self._env, timed)
             value = self._body.addressable(self._body.ir(term.value, self._env), "token")
+            if self._may_bind(arc, term):
+                value = self._body.spill(value, "token")
+                if limit is not None:
+                    limit = self._body.spill(limit, "limit")
+                self._body.emit(ir.UnlessBind())
             note = arc_note(self._net, arc)
             self._body.emit(ir.UnlessHeld(arc.place, value, count, limit, note))
         return True
@@ -404,6 +419,8 @@ class _Thresholds(_Enumeration):
         assert term.delay is not None
         delay = in_clock(self._program.real_time, self._body.ir(term.delay, self._env))
         delay = self._body.atomic(delay, "delay")
+        if self._may_bind(arc, term):
+            self._body.emit(ir.UnlessBind())
         self._body.emit(ir.Threshold(arc.place, delay, arc_note(self._net, arc)))
 
 

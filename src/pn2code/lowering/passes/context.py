@@ -94,6 +94,8 @@ def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
     for s in statements:
         if isinstance(s, ir.Wanted):
             out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
+            if s.may_bind:
+                out.append(ir.UnlessBind())
         elif isinstance(s, ir.ForTokens):
             out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
         elif isinstance(s, ir.ForValues):

@@ -10,8 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.computing import Computed
+from pn2code.net import generative
 from pn2code.net.uses import pattern_variables, walk
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects
 from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
@@ -38,6 +40,10 @@ def compute(program: core.Program, exp: core.Exp, *, fixed: bool, real_time: boo
         return Computed(None, "it draws random numbers, or looks at files or clocks")
     if fixed and Effect.READ in effects:
         return Computed(None, "it reads a reference")
+    if generative.refuse_beside(program.declarations, [exp], Diagnostics()):
+        return Computed(
+            None, "it uses an exception that one call of a function may raise for another"
+        )
     chosen = _used(program.declarations, exp)
     if Effect.READ in effects or any(
         map(_asks_colset, (exp, *(v for dec in chosen for v in _values(dec))))

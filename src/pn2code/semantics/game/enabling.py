@@ -11,6 +11,7 @@ Whatever fails ends it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -29,6 +30,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.no_match import no_match_places
 from pn2code.net.total import is_total
 from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.evaluation.effects import effects_of
@@ -78,6 +80,10 @@ class GameError(Exception):
         return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
 
 
+class NoMatchError(GameError):
+    """`Bind` was raised where it means that there is no binding (`net.no_match`)."""
+
+
 class GivenUpError(GameError):
     """The token game gives up before it knows: it does not evaluate for longer, or with more memory."""
 
@@ -118,6 +124,25 @@ class running:  # noqa: N801 - a context manager reads as a word
         if isinstance(raised, MemoryError):
             why = "it needs more memory than there is"
             raise GivenUpError(f"{self.doing} was given up: {why}", origin) from None
+
+
+class wanting(running):  # noqa: N801
+    """As `running`, for what an input arc wants."""
+
+    __slots__ = ("arc", "enabling", "t")
+
+    def __init__(self, enabling: Enabling, t: FlatTransition, arc: FlatArc, doing: str) -> None:
+        super().__init__(arc.origin, doing)
+        self.enabling = enabling
+        self.t = t
+        self.arc = arc
+
+    def __exit__(self, kind: object, raised: BaseException | None, trace: object) -> None:
+        """Raise the GameError."""
+        is_bind = isinstance(raised, MlException) and raised.name == "Bind"
+        if is_bind and self.enabling.means_no_match(self.t, self.arc.place):
+            raise NoMatchError(f"{self.doing} raised the exception `Bind`", self.origin) from None
+        super().__exit__(kind, raised, trace)
 
 
 @frozen
@@ -182,6 +207,7 @@ class Enabling:
         self._early_places: dict[int, list[list[int]]] = {}
         self._wants: dict[int, _Wants] = {}
         self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
+        self._no_match: dict[int, frozenset[int]] = {}
 
     # --- search for bindings ---------------------------------------------------------------------
 
@@ -240,7 +266,7 @@ class Enabling:
                     return
         match t.plan[position]:
             case BindTerm(arc, term):
-                choices = self._match_tokens(t.arcs[arc], term, marking, found, free)
+                choices = self._match_tokens(t, t.arcs[arc], term, marking, found, free)
             case BindEquation(guard, pattern, value):
                 choices = self._match_equation(t, guard, pattern, value, found)
             case BindAll(symbol) | BindRandom(symbol):
@@ -253,7 +279,13 @@ class Enabling:
                 yield from self._search(t, marking, position + 1, choice, free, accept, wanting)
 
     def _match_tokens(
-        self, arc: FlatArc, index: int, marking: Marking, found: Found, free: bool
+        self,
+        t: FlatTransition,
+        arc: FlatArc,
+        index: int,
+        marking: Marking,
+        found: Found,
+        free: bool,
     ) -> Iterator[Found]:
         assert arc.inscription is not None
         term = arc.inscription.terms[index]
@@ -265,7 +297,10 @@ class Enabling:
                 continue
             if not free and isinstance(tokens, TimedMultiSet):
                 earliest = tokens.stamps[value][0]
-                if earliest - self._advance(arc, term, choice) > marking.time:
+                try:
+                    if earliest - self._advance(t, arc, term, choice) > marking.time:
+                        continue
+                except NoMatchError:
                     continue
             yield choice
 
@@ -274,7 +309,8 @@ class Enabling:
         for step in t.plan:
             if isinstance(step, BindTerm) and t.arcs[step.arc].place == place:
                 arc = t.arcs[step.arc]
-                for found in self._match_tokens(arc, step.term, marking, self.constants, True):
+                start = self.constants
+                for found in self._match_tokens(t, arc, step.term, marking, start, True):
                     own = {s: found[s.uid] for s in t.variables if s.uid in found}
                     if self._are_legal(list(own), found):
                         yield own
@@ -365,11 +401,17 @@ class Enabling:
     def _evaluate(self, exp: Any, found: Found) -> Any:
         return self.evaluator.evaluate(exp, found)
 
-    def _advance(self, arc: FlatArc, term: Term, found: Found) -> Any:
+    def _advance(self, t: FlatTransition, arc: FlatArc, term: Term, found: Found) -> Any:
         if term.delay is None:
             return 0
-        with running(arc.origin, "the delay of an input arc"):
+        with wanting(self, t, arc, "the delay of an input arc"):
             return self._evaluate(term.delay, found)
+
+    def means_no_match(self, t: FlatTransition, place: int) -> bool:
+        """Whether `Bind` of what is wanted of a place means that there is no binding."""
+        if t.index not in self._no_match:
+            self._no_match[t.index] = no_match_places(t)
+        return place in self._no_match[t.index]
 
     # --- demands ---------------------------------------------------------------------------------
 
@@ -404,32 +446,45 @@ class Enabling:
         """Whether a place holds what the transition wants of it."""
         arcs = self._wanted(t).arcs[place]
         terms = [(arc, term) for arc in arcs for term in _terms(arc)]
-        demands = [d for arc, term in terms for d in self._term_demands(arc, term, found)]
+        try:
+            demands = [d for arc, term in terms for d in self._term_demands(t, arc, term, found)]
+        except NoMatchError:
+            return False
         return isinstance(self.take(marking, demands), Marking)
 
     def _is_held(self, t: FlatTransition, marking: Marking, binding: Binding) -> bool:
         """Whether all places hold what the transition wants; one that does not ends the question."""
         wants = self._wanted(t)
         if wants.together:
-            return isinstance(self.take(marking, self.demands(t, binding)), Marking)
+            try:
+                return isinstance(self.take(marking, self.demands(t, binding)), Marking)
+            except NoMatchError:
+                return False
         found = {s.uid: value for s, value in binding.items()}
         return all(self._suffices(t, marking, place, found) for place in wants.arcs)
 
     def demands(
         self, t: FlatTransition, binding: Binding, *, only: int | None = None
     ) -> list[Demand]:
-        """What the input arcs want with a binding; `only`: the arc with that index."""
+        """What the input arcs want with a binding; `only`: the arc with that index.
+
+        Raises:
+            NoMatchError: there is no such binding.
+            GameError: an inscription raised an exception.
+        """
         found = {s.uid: value for s, value in binding.items()}
         demands: list[Demand] = []
         for arc in t.arcs if only is None else (t.arcs[only],):
             if arc.kind in (ArcKind.INPUT, ArcKind.BOTH) and arc.inscription is not None:
                 for term in arc.inscription.terms:
-                    demands.extend(self._term_demands(arc, term, found))
+                    demands.extend(self._term_demands(t, arc, term, found))
         return demands
 
-    def _term_demands(self, arc: FlatArc, term: Term, found: Found) -> list[Demand]:
-        early = self._advance(arc, term, found)
-        with running(arc.origin, "the inscription"):
+    def _term_demands(
+        self, t: FlatTransition, arc: FlatArc, term: Term, found: Found
+    ) -> list[Demand]:
+        early = self._advance(t, arc, term, found)
+        with wanting(self, t, arc, "the inscription"):
             value = self._evaluate(term.value, found)
             count = self._evaluate(term.coefficient, found)
         if term.whole:
@@ -500,7 +555,10 @@ class Enabling:
         own_values = {s.uid: binding[s] for s in t.variables if s not in outputs}
         found: Found = {**self.constants, **own_values}
         own = {s: value for s, value in binding.items() if s not in outputs}
-        demands = self.demands(t, own)
+        try:
+            demands = self.demands(t, own)
+        except NoMatchError as none:
+            return f"{none.origin.describe()}: {none.message}"
         missing = self.take(marking, demands)
         if isinstance(missing, Demand):
             return self.shortage(marking, missing, demands)
@@ -508,7 +566,8 @@ class Enabling:
         for step in t.plan:
             if isinstance(step, BindTerm):
                 arc = t.arcs[step.arc]
-                if next(self._match_tokens(arc, step.term, marking, found, False), None) is None:
+                fitting = self._match_tokens(t, arc, step.term, marking, found, False)
+                if next(fitting, None) is None:
                     return f"no token in place `{self.net.places[arc.place].name}` matches"
         for arc in self._inhibitors(t, marking):
             place = self.net.places[arc.place]
@@ -572,11 +631,15 @@ class Enabling:
         if term.delay is None:
             return {0}
         if not variables(term.delay) & set(t.variables):
-            return {self._advance(arc, term, {})}
-        return {
-            self._advance(arc, term, {s.uid: value for s, value in binding.items()})
-            for binding in self.bindings(t, marking, ignore_stamps=True)
-        }
+            with suppress(NoMatchError):
+                return {self._advance(t, arc, term, {})}
+            return set()
+        found: set[int | float] = set()
+        for binding in self.bindings(t, marking, ignore_stamps=True):
+            with suppress(NoMatchError):
+                values = {s.uid: value for s, value in binding.items()}
+                found.add(self._advance(t, arc, term, values))
+        return found
 
 
 def _terms(arc: FlatArc) -> tuple[Term, ...]:

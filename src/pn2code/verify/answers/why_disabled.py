@@ -22,7 +22,7 @@ from itertools import islice
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatTransition
 from pn2code.semantics.evaluation.evaluate import variables
-from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.game.enabling import Demand, Enabling, NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking, place_text, variable_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import MlException
@@ -126,7 +126,11 @@ def _unfit(game: Game, t: FlatTransition) -> str:
     for binding in islice(enabling.bindings(t, marking), _MOST_BINDINGS):
         own = {s: v for s, v in binding.items() if s not in outputs}
         by_place: dict[int, list[Demand]] = {}
-        for demand in enabling.demands(t, own):
+        try:
+            demands = enabling.demands(t, own)
+        except NoMatchError:
+            continue
+        for demand in demands:
             by_place.setdefault(demand.place, []).append(demand)
         lacking = tuple(
             p
