@@ -4,8 +4,8 @@
  *     tables FILE METHOD SECONDS MIB SEED [PATIENCE]
  *
  * METHOD is walk, explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings). Diagrams
- * that are not whole after PATIENCE (in seconds, too) are given up; the others go on. The exit code is 0 when the method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory
- * ran out.
+ * that are not whole after PATIENCE (in seconds, too) are given up; the others go on. The exit code is 0 when the
+ * method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory ran out.
  */
 #include "tables.h"
 

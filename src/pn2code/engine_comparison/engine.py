@@ -38,7 +38,7 @@ Of 1,700 generated transitions whose arcs and guards share variables (`--binding
 it cannot compile the code that it makes of them, as was seen for each.
 
 Of 540 nets with the idioms of published models, changed so that they stay well-typed mostly (`--altered`), 537 verdicts were the same (one had no answer); of
-468 runs 455 were possible here, nine depend on chance, and in four the engine is wrong. Of 62 state spaces 50 were the same, ten were not complete,
+468 runs 455 were possible here, nine depend on chance, and in four the engine is wrong. Of 62 state spaces 50 were the same, of ten there was nothing to compare,
 one depends on chance, and one net changes an array, which the engine does not restore. One verdict that differed was of a computed timed multi-set on an input arc (`unsupported-timed-input`), one of two
 initial markings of a fusion set with time stamps, of which `check` only warns (`fusion-mismatch`), and which the engine refuses.
 
