@@ -154,7 +154,7 @@ CELLS = {
     ),
     "shared place that is no channel": Case(
         "cell.toml", put('[[channel]]\nplace = "medida1"\nfile = "medida1.robcad"\nkind = "data"\n', ""),
-        "channel-undeclared", ("`Cell.medida1`", "`robot1`"), "CPN", 'file = "medida1.robcad", kind = "data"',
+        "channel-undeclared", ("`Cell.medida1`", "`robot1`"), "CPN", 'file = "medida1.robcad"',
     ),
     "misspelt key": Case(
         "cell.toml", put("reply_timeout_s", "reply_timeout"), "cell-key", ("`reply_timeout`",),

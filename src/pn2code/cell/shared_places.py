@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 from pathlib import PurePath
@@ -244,6 +245,6 @@ def report_undeclared(
             codes.CHANNEL_UNDECLARED,
             f"place `{place.name}` is shared by {who}, but is not a channel",
             place.origins[0],
-            hint=f'add to {config.path.name}: [[channel]] place = "{place.short}", '
-            f'file = "{place.short}.robcad", kind = "{kind}"',
+            hint=f"add to {config.path.name}:\n[[channel]]\nplace = {json.dumps(place.short, ensure_ascii=False)}\n"
+            f'file = {json.dumps(place.short + ".robcad", ensure_ascii=False)}\nkind = "{kind}"',
         )

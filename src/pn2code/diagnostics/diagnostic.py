@@ -51,7 +51,7 @@ class Diagnostic:
         span: the characters to underline, when the place is inside an inscription.
         label: text beside the caret.
         notes: further facts.
-        hint: what to do ("help:").
+        hint: what to do ("help:"); further lines are what to put into a file.
         accepted: why somebody who has looked at this warning accepts it (`[[accept]]` of cell.toml); "": nobody has.
     """
 

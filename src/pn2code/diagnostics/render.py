@@ -65,7 +65,10 @@ def full(item: Diagnostic, style: Style = plain) -> str:
     if not hint and item.severity is Severity.ERROR:
         hint = f"`pn2code explain {item.code}` says more"
     if hint:
-        out.append(f"{margin} {style('rule', '=')} help: {hint}")
+        first, *more = hint.split("\n")
+        out.append(f"{margin} {style('rule', '=')} help: {first}")
+        # What is to be put into a file stands in lines of its own, so that it can be copied.
+        out += [f"{margin}    {line}" for line in more]
     return "\n".join(out)
 
 

@@ -15,6 +15,7 @@ from pn2code.cell.load import load
 from pn2code.cell.partition import ChannelKind
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, Severity
+from pn2code.diagnostics.render import full
 from pn2code.net import front
 
 FINAL = 'final = ["Finished"]'
@@ -255,3 +256,15 @@ def test_a_misspelt_channel_is_one_mistake(tmp_path: Path) -> None:
     errors = [x for x in said(tmp_path / "b", NET, toml) if x.severity is Severity.ERROR]
     assert sorted(x.code for x in errors) == ["cell-unknown-place", "channel-undeclared"]
     assert any("`Top.done` is shared" in x.message for x in errors)
+
+
+def test_the_channel_that_is_proposed_can_be_copied_into_the_file(tmp_path: Path) -> None:
+    toml = changed(TOML, '[[channel]]\nplace = "done"\nfile = "done.robcad"\nkind = "flag"\n', "")
+    (found,) = (x for x in said(tmp_path / "a", NET, toml) if x.severity is Severity.ERROR)
+    first, proposal = found.hint.split("\n", 1)
+    assert first == "add to cell.toml:" and f"\n       {proposal.splitlines()[1]}\n" in full(found)
+    assert not [
+        x
+        for x in said(tmp_path / "b", NET, f"{toml}\n{proposal}\n")
+        if x.severity is Severity.ERROR
+    ]
