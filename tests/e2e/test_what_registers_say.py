@@ -25,7 +25,10 @@ def changed(folder: Path, file: str, old: str, new: str) -> Path:
 def test_a_place_without_entry_is_said_to_be_a_register(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["check", str(changed(tmp_path, "cell.toml", CHANNEL, ""))])
     assert done.exit_code == 1
-    assert 'place = "limit", file = "limit.robcad", kind = "register"' in done.output
+    lines = [line.strip() for line in done.output.splitlines()]
+    at = lines.index("[[channel]]")
+    entry = ['place = "limit"', 'file = "limit.robcad"', 'kind = "register"']
+    assert lines[at + 1 : at + 4] == entry
 
 
 def test_a_deadlock_is_told_by_what_was_drawn(tmp_path: Path) -> None:
