@@ -6,12 +6,10 @@ import dataclasses
 from typing import Any
 
 from pn2code.ml.core.terms import Builtin, Dec, Program, RecBind, Symbol, ValBind, Var
+from pn2code.semantics.evaluation.effects import effects_of_builtin
 
-_IMPURE = frozenset({"Ms.random", "Colset.ran"})
-_IMPURE_STRUCTURES = (
-    "Random.", "TextIO.", "BinIO.", "IO.", "OS.", "Posix.", "CommandLine.", "ConnManagementLayer.", "Time.step",
-    "Time.time", "Time.now", "Timer.", "Date.", "Ref.", "Array.", "CPN'",
-)  # fmt: skip
+_MORE = ("TextIO.", "IO.", "OS.", "Time.time", "Array.", "CPN'")
+"""Structures whose functions are not taken for pure, whatever they do; the model time is no part of an expression."""
 
 
 def impure(exp: Any, program: Program) -> str:
@@ -25,7 +23,7 @@ def impure(exp: Any, program: Program) -> str:
         node = todo.pop()
         match node:
             case Builtin(name):
-                if name in _IMPURE or (name.startswith(_IMPURE_STRUCTURES) and name != "Ref.ref"):
+                if effects_of_builtin(name) or name.startswith(_MORE):
                     return name
             case Var(symbol):
                 if symbol in bodies and symbol not in seen:

@@ -51,7 +51,7 @@ OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK})
 """What makes a value depend on more than the net."""
 
 
-def _builtin(name: str) -> Found:
+def effects_of_builtin(name: str) -> Found:
     """The effects of a function of the built-in environment."""
     if name in _DRAWING or name.startswith(_DRAW):
         return frozenset({Effect.DRAW})
@@ -146,7 +146,7 @@ class Effects:
             elif (parts := _parts(kind)) is not None:
                 todo += parts(item)
             elif kind is core.Builtin:
-                found |= _builtin(item.name)
+                found |= effects_of_builtin(item.name)
             elif kind is core.Symbol:
                 found |= self._of_symbol.get(item.uid, NONE)
         return frozenset(found)

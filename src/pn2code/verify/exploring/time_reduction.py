@@ -27,6 +27,7 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
 from pn2code.net.reached import inscriptions
 from pn2code.net.uses import walk
+from pn2code.semantics.evaluation.effects import Effect, effects_of_builtin
 
 _READS_TIME = frozenset({"Time.time", "Time.step"})
 _STAMPS_UNSEEN = frozenset(
@@ -38,17 +39,8 @@ _STAMPS_UNSEEN = frozenset(
 """Functions that have to do with timed tokens and do not look at their stamps."""
 _OUTSIDE = frozenset({"TextIO.print"})
 """Functions that look impure and decide nothing."""
-_OUTSIDE_PREFIXES = (
-    "Random.",
-    "TextIO.",
-    "OS.",
-    "BinIO.",
-    "CommandLine.",
-    "ConnManagementLayer.",
-    "Time.now",
-    "Timer.",
-)
-_RANDOM = frozenset({"Ms.random", "Colset.ran"})
+_FILES = ("TextIO.", "OS.")
+"""Structures whose functions are taken to use files, whatever they do."""
 _TIMED = "timed"
 
 
@@ -171,9 +163,10 @@ def _builtin_reads(name: str, t: Type) -> str | None:
         return "makes or looks at time stamps"
     if name in _OUTSIDE:
         return None
-    if name.startswith("Random.") or name in _RANDOM:
+    found = effects_of_builtin(name)
+    if Effect.DRAW in found:
         return "draws random numbers"
-    if name.startswith(_OUTSIDE_PREFIXES):
+    if Effect.LOOK in found or name.startswith(_FILES):
         return "uses files, which are no part of a marking"
     return None
 
