@@ -17,6 +17,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
+from pn2code.base.unused_name import unused_name
 from pn2code.cell.partition import Partition
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.token_groups import (
@@ -440,5 +441,4 @@ def free_name(net: FlatNet) -> str:
     """A name for the place that the net does not have, on its top page."""
     taken = {p.name for p in net.places}
     top = net.places[0].name.split(".")[0] + "." if "." in net.places[0].name else ""
-    numbered = (f"{top}Zone {n}" for n in itertools.count(2))
-    return next(x for x in itertools.chain([f"{top}Zone"], numbered) if x not in taken)
+    return unused_name(f"{top}Zone", taken, "{} {}")

@@ -8,11 +8,11 @@ made = b.net()
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import count
 
 from pn2code.base.frozen import frozen
+from pn2code.base.unused_name import unused_name
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml.core import types
 from pn2code.ml.core.colsets import Colset, Kind
@@ -84,7 +84,7 @@ class Builder:
     # --- colour sets, variables, expressions -----------------------------------------------------
 
     def _colset(self, c: Colset) -> Colset:
-        name = _unused(c.name, self._colsets)
+        name = unused_name(c.name, self._colsets)
         made = replace(c, name=name, origin=self._origin)
         self._colsets[name] = made
         return made
@@ -99,7 +99,7 @@ class Builder:
         symbol = self._made.get((name, colset.name))
         if symbol is None:
             self._uid += 1
-            shown = _unused(name, self._variables)
+            shown = unused_name(name, self._variables)
             symbol = Symbol(self._uid, shown, colset.type, colset=colset)
             self._made[name, colset.name] = symbol
             self._variables[shown] = symbol
@@ -152,7 +152,7 @@ class Builder:
     def place(self, name: str, colset: Colset, initial: Exp | None = None) -> int:
         """A new place, with one token or none; its index. Its name is made unique."""
         index = len(self.places)
-        name = _unused(name, self._place_names, "{} ({})")
+        name = unused_name(name, self._place_names, "{} ({})")
         self._place_names.add(name)
         self.places.append(
             FlatPlace(
@@ -209,7 +209,7 @@ class Builder:
         self, name: str, arcs: Sequence[Arc], *, priority: int, guards: Sequence[Exp] = ()
     ) -> str:
         """A new transition; its name, which is made unique."""
-        shown = _unused(name, self._names, "{} ({})")
+        shown = unused_name(name, self._names, "{} ({})")
         self._names.add(shown)
         self._wanted[shown] = _Wanted(shown, tuple(arcs), tuple(guards), priority)
         return shown
@@ -298,11 +298,3 @@ class Builder:
                 )
             inscription = ArcInscription(arc.value, arc.form, found or (), origin)
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
-
-
-def _unused(name: str, taken: Container[str], form: str = "{}{}") -> str:
-    """The name, or with the first number (from 2) that makes it another one than those that are taken."""
-    if name not in taken:
-        return name
-    numbered = (form.format(name, n) for n in count(2))
-    return next(x for x in numbered if x not in taken)

@@ -17,6 +17,7 @@ from itertools import product
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.base.unused_name import unused_name
 from pn2code.base.whole_file import whole_file
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, TFun
@@ -107,7 +108,10 @@ class Split:
                     properties.steps[k].exp if is_so else _negated(properties.steps[k].exp)
                     for k, is_so in zip(own, outcome, strict=True)
                 ]
-                name = _unused(f"{t.name}#{number + 1}", taken) if own else t.name
+                name = t.name
+                if own:
+                    name = unused_name(f"{t.name}#{number + 1}", taken, "{}#{}")
+                    taken.add(name)
                 made.append(replace(t, index=index, name=name, guards=(*t.guards, *guards)))
                 names.append(t.name)
                 parts.setdefault(t.index, []).append(index)
@@ -135,14 +139,6 @@ class Split:
             lines.append(json.dumps(line, ensure_ascii=False) + "\n")
         with whole_file(trace) as beside:
             beside.write_text("".join(lines), encoding="utf-8", errors="surrogateescape")
-
-
-def _unused(name: str, taken: set[str]) -> str:
-    """A name for a part that nothing else has, so that it is known by it in a trace."""
-    while name in taken:
-        name += "#"
-    taken.add(name)
-    return name
 
 
 def _negated(exp: core.Exp) -> core.Exp:

@@ -50,7 +50,7 @@ class _Made:
     instance: str
     number: int
     origin: Origin
-    is_look: bool = False
+    role: Role = Role.REGISTER
 
 
 def with_messages(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[FlatNet, CellConfig]:
@@ -213,7 +213,7 @@ class _Composer:
             here = f"{place.short} in {control.short}"
             takes = b.take(value, b.pair(new, any_of_them))
             begins = [b.take(state, x), b.put(looking, x), takes, *own]
-            self._step(reader, f"See {here}", soon, begins, place, is_look=True)
+            self._step(reader, f"See {here}", soon, begins, place, Role.LOOK)
             takes = b.take(value, b.pair(new, newer))
             again = [b.take(looking, x), b.put(looking, x), takes, *own]
             self._step(reader, f"See again {here}", soon, again, place)
@@ -264,13 +264,7 @@ class _Composer:
 
     def _place(self, owner: int, short: str, colset: Colset, of: FlatPlace) -> int:
         made = self._at(owner, short, of.origins[0])
-        taken = {p.name for p in self.b.places}
-        name = path = f"{made.instance.replace('/', '.')}.{short}"
-        number = 2
-        while name in taken:
-            name = f"{path}{number}"
-            number += 1
-        index = self.b.place(name, colset)
+        index = self.b.place(f"{made.instance.replace('/', '.')}.{short}", colset)
         self.places[index] = made
         return index
 
@@ -281,10 +275,9 @@ class _Composer:
         priority: int,
         arcs: Sequence[Arc],
         of: FlatPlace,
-        *,
-        is_look: bool = False,
+        role: Role = Role.REGISTER,
     ) -> None:
-        made = replace(self._at(owner, short, of.origins[0]), is_look=is_look)
+        made = replace(self._at(owner, short, of.origins[0]), role=role)
         path = f"{made.instance.replace('/', '.')}.{short}"
         self.b.transition(path, arcs, priority=priority)
         self.transitions.append(made)
@@ -302,9 +295,9 @@ class _Composer:
                     page=made.page,
                     instance=made.instance,
                     instance_number=made.number,
-                    id=f"{_ID}{'look-' if made.is_look else ''}{t.index}",
+                    id=f"{_ID}{t.index}",
                     origin=made.origin,
-                    role=Role.LOOK if made.is_look else Role.REGISTER,
+                    role=made.role,
                 )
                 for t, made in zip(net.transitions[count:], self.transitions, strict=True)
             ),
