@@ -100,25 +100,12 @@ def _refuse(
     local = [x for around, e in roots for x in _declared(e, around, bool(around))]
     if not local:
         return False
-    for _, root in roots:
-        for e in walk(root):
-            if isinstance(e, Let):
-                for dec in e.declarations:
-                    bodies.update(_bodies(dec))
-    for dec in declarations:
+    inner = [
+        dec for _, root in roots for e in walk(root) if isinstance(e, Let) for dec in e.declarations
+    ]
+    for dec in (*inner, *declarations):
         bodies.update(_bodies(dec))
-    open_types = _open_types(
-        [
-            *declarations,
-            *(
-                dec
-                for _, root in roots
-                for e in walk(root)
-                if isinstance(e, Let)
-                for dec in e.declarations
-            ),
-        ]
-    )
+    open_types = _open_types([*declarations, *inner])
     errors = len(d.errors)
     can_run = {id(e) for e in run()}
     own = {f"library/{name}.sml" for name in library_names()}
