@@ -330,7 +330,7 @@ def test_arms_that_nearly_touch(tmp_path: Path) -> None:
     one, other = (planner.standing(planner.home(r.name)) for r in arms.robots)
     apart = compared.two((one, ()), (other, ()))
     assert apart.outcome == "clear"
-    distance = min(x.distance for x in backend.pairs("robots", "robot1", 5.0, "robot2"))
+    distance = min(x.distance for x in backend.distances.pairs("robots", "robot1", 5.0, "robot2"))
     backend.close()
     for more, outcome in ((5e-6, "open"), (-1e-3, "touch"), (5e-3, "clear")):
         base = arms.robots[1].base

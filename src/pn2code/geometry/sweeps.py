@@ -90,7 +90,7 @@ class Sweeper:
         def measure(q_a: Array, q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
-            found = self._backend.pairs("robots", a.robot, limit, b.robot, near=near)
+            found = self._backend.distances.pairs("robots", a.robot, limit, b.robot, near=near)
             return [
                 replace(x, allowed=None)
                 if not turning.isdisjoint(x.plates)
@@ -104,7 +104,7 @@ class Sweeper:
 
     def _skipped(self, a: Track, b: Track, *, is_free: bool) -> Flags:
         """Links that may touch, (links of a, links of b)."""
-        may = self._backend.allowed
+        may = self._backend.distances.allowed
         rows = [[not is_free and may(x, y) is not None for y in b.names] for x in a.names]
         return np.array(rows)
 
@@ -124,7 +124,9 @@ class Sweeper:
 
         def measure(q_a: Array, _q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
-            return self._backend.pairs("scene", a.robot, limit, only={part.name}, near=near)
+            return self._backend.distances.pairs(
+                "scene", a.robot, limit, only={part.name}, near=near
+            )
 
         return measure
 
@@ -242,7 +244,7 @@ class Sweeper:
             times = 2.0 if kind == "self" else 1.0
             limit = max(best, 0.0) + times * wide + ROUNDING
             nearest = None if own is None else own.near(first, last, limit)
-            found = self._backend.pairs(kind, a.robot, limit, near=nearest)
+            found = self._backend.distances.pairs(kind, a.robot, limit, near=nearest)
             bound = best + ROUNDING
             is_open = False
             lowest = max(best, 0.0) + ROUNDING

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,10 +18,9 @@ from pn2code.robot.backend import (
     Beside,
     Camera,
     Clearance,
-    ClearanceKind,
     Picture,
 )
-from pn2code.robot.bullet_distances import BulletDistances, Near, Placed
+from pn2code.robot.bullet_distances import BulletDistances, Placed
 from pn2code.robot.bullet_world import BulletWorld, silent
 from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import bodies, zone_body
@@ -36,7 +35,10 @@ _HORIZON = (236.0, 239.0, 242.0)
 
 
 class BulletBackend:
-    """PyBullet without a window, or with one (`gui`)."""
+    """PyBullet without a window, or with one (`gui`).
+
+    `distances` also says how close each pair is, for those who sweep moves against each other.
+    """
 
     name: BackendName = "bullet"
 
@@ -68,10 +70,10 @@ class BulletBackend:
         self._parts: dict[str, Placed] = {}
         self._q: dict[str, tuple[float, ...]] = {}
         self._axis: dict[str, int] = {}
-        self._distances = BulletDistances(self._world, cell, self._robots, self._scene, self._parts)
+        self.distances = BulletDistances(self._world, cell, self._robots, self._scene, self._parts)
         for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
-        self._distances.stand_at_home()
+        self.distances.stand_at_home()
 
     def _load_egl(self) -> None:
         """The GPU renderer, where there is one; it must be there before any body. Asked for by name,
@@ -93,7 +95,7 @@ class BulletBackend:
         if old == new:
             return
         self._q[robot] = new
-        self._distances.moved(robot)
+        self.distances.moved(robot)
         self._p.resetJointStatesMultiDof(
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
@@ -113,7 +115,7 @@ class BulletBackend:
     def set_base(self, robot: str, base: Pose) -> None:
         """Puts the base of a robot elsewhere; what it stands on stays."""
         self._world.place(self._robots[robot].body, base)
-        self._distances.moved()
+        self.distances.moved()
         # The joints are set again, so that all links follow.
         self._q.pop(robot, None)
 
@@ -130,7 +132,7 @@ class BulletBackend:
                 placed = Placed(part, self._world.load_kind(part.kind, part.name, self._looks))
             self._parts[part.name] = placed
         placed.part, placed.hidden = part, False
-        self._distances.moved()
+        self.distances.moved()
         self._move(placed)
 
     def hide_part(self, name: str) -> None:
@@ -138,7 +140,7 @@ class BulletBackend:
         placed = self._parts[name]
         away = Part(name, placed.part.kind, translation(0.0, 0.0, -1000.0))
         placed.part, placed.hidden = away, True
-        self._distances.moved()
+        self.distances.moved()
         self._move(placed)
 
     def _move(self, placed: Placed) -> None:
@@ -158,7 +160,7 @@ class BulletBackend:
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""
         self._world.remove(self._parts.pop(name).id)
-        self._distances.moved()
+        self.distances.moved()
 
     def tcp(self, robot: str) -> Array:
         """`T_world_tcp` as PyBullet has it."""
@@ -252,35 +254,11 @@ class BulletBackend:
 
     def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
         """How near a part is to each thing, part and turntable."""
-        return self._distances.around(name, limit)
+        return self.distances.around(name, limit)
 
     def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
         """The closest pair of each kind and robot, and permitted contacts that overlap."""
-        return self._distances.clearances(limit)
-
-    def pairs(
-        self,
-        kind: ClearanceKind,
-        robot: str,
-        limit: float,
-        other: str = "",
-        only: Container[str] | None = None,
-        near: Near | None = None,
-    ) -> list[Clearance]:
-        """The least distance of each two links, or link and thing, that are nearer than `limit` (m).
-
-        Args:
-            kind: to which things: of the robot `other`, of the scene (with the parts that stand), or its own.
-            robot: of which the links are, with the part that it carries.
-            only: of the scene, the things of these names.
-            near: only these pairs can be nearer than `limit`, a link of `robot` first, of its own links and parts in
-                both orders; None: nothing is known.
-        """
-        return self._distances.pairs(kind, robot, limit, other, only, near)
-
-    def allowed(self, a: str, b: str) -> float | None:
-        """How deep two parts may overlap; None: they must keep apart."""
-        return self._distances.allowed(a, b)
+        return self.distances.clearances(limit)
 
     def box(self, robot: str, link: str) -> tuple[Array, Array] | None:
         """The corners of a box around a link's collision shapes in its frame, a little too large; None: it has none."""

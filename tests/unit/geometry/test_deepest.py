@@ -72,7 +72,9 @@ def test_two_arms(x: float) -> None:
         backend.set_joints("left", q)
         for p in grid(other, 11):
             backend.set_joints("right", p)
-            distances += [c.distance for c in backend.pairs("robots", "left", 0.5, "right")]
+            distances += [
+                c.distance for c in backend.distances.pairs("robots", "left", 0.5, "right")
+            ]
     nearest = compared.nearest()
     backend.close()
     if x > 1400.0:
@@ -98,7 +100,7 @@ def test_an_arm_and_what_stands() -> None:
     distances = []
     for q in grid(leg, 100):
         backend.set_joints("left", q)
-        distances += [c.distance for c in backend.pairs("scene", "left", 0.1)]
+        distances += [c.distance for c in backend.distances.pairs("scene", "left", 0.1)]
     backend.close()
     assert found.outcome == "touch" and found.where is not None
     assert found.least <= min(distances) and found.where.distance <= 0.85 * min(distances)

@@ -49,7 +49,7 @@ def test_answers_hold_for_samples(workload: Workload) -> None:
             for q, p in ways:
                 backend.set_joints("left", q)
                 backend.set_joints("right", p)
-                near = backend.pairs("robots", "left", 0.5, "right")
+                near = backend.distances.pairs("robots", "left", 0.5, "right")
                 distances.append(min((c.distance for c in near), default=0.5))
             if found.outcome == "touch":
                 assert min(distances) == pytest.approx(found.nearest) and found.nearest < 0.0

@@ -222,8 +222,12 @@ def test_distances_on_the_way_are_no_less_than_what_is_certain(
             Shown(backend).show((*doing.start.parts.present.values(),))
             for share in range(11):
                 backend.set_joints("robot", leg.path.on_way(np.array([share / 10.0]))[0])
-                scene = backend.pairs("scene", "robot", 0.5, only={"box.3"})
-                mine = [c.distance for c in backend.pairs("self", "robot", 0.5) if "box" in c.b]
+                scene = backend.distances.pairs("scene", "robot", 0.5, only={"box.3"})
+                mine = [
+                    c.distance
+                    for c in backend.distances.pairs("self", "robot", 0.5)
+                    if "box" in c.b
+                ]
                 off = min((c.distance + (c.allowed or 0.0) for c in scene), default=0.5)
                 assert off >= swept.least - 1e-5
                 assert min(mine, default=0.5) >= itself.least - 1e-5

@@ -65,12 +65,12 @@ def test_of_two_arms() -> None:
             gap = gaps(one, a.radii, other, b.radii)[0]
             for limit in LIMITS:
                 some = near(gap, limit, list(a.names), list(b.names))
-                whole = backend.pairs("robots", "left", limit, "right")
-                assert backend.pairs("robots", "left", limit, "right", near=some) == whole
+                whole = backend.distances.pairs("robots", "left", limit, "right")
+                assert backend.distances.pairs("robots", "left", limit, "right", near=some) == whole
                 assert {(c.a, c.b) for c in whole} <= some
                 skipped += gap.size - len(some)
                 found += len(whole)
-            for c in backend.pairs("robots", "left", 2.0, "right"):
+            for c in backend.distances.pairs("robots", "left", 2.0, "right"):
                 assert c.distance >= gap[a.names[c.a], b.names[c.b]]
     backend.close()
     assert found > 100 and skipped > 1000
@@ -100,8 +100,8 @@ def test_of_one_arm_with_what_it_carries(is_loaded: bool) -> None:
         backend.set_joints("robot", knots.q[0])
         for limit in LIMITS:
             some = own.near(a, b, limit)
-            whole = backend.pairs("self", "robot", limit)
-            assert backend.pairs("self", "robot", limit, near=some) == whole
+            whole = backend.distances.pairs("self", "robot", limit)
+            assert backend.distances.pairs("self", "robot", limit, near=some) == whole
             assert {(c.a, c.b) for c in whole} <= some
             skipped += track.radii.size * (track.radii.size - 1) - len(some)
     # The same at random joint positions: what capsules say is never more than what is measured.
@@ -112,14 +112,14 @@ def test_of_one_arm_with_what_it_carries(is_loaded: bool) -> None:
     for row in range(len(q)):
         backend.set_joints("robot", q[row])
         gap = gaps(knots.only(row), track.radii, knots.only(row), track.radii)[0]
-        whole = backend.pairs("self", "robot", 1.0)
+        whole = backend.distances.pairs("self", "robot", 1.0)
         for c in whole:
             assert c.distance >= gap[track.names[c.a], track.names[c.b]] - 1e-9
         for limit in LIMITS:
             some = near(gap, limit, list(track.names), list(track.names))
             some |= {(y, x) for x, y in some}
-            close = backend.pairs("self", "robot", limit)
-            assert backend.pairs("self", "robot", limit, near=some) == close
+            close = backend.distances.pairs("self", "robot", limit)
+            assert backend.distances.pairs("self", "robot", limit, near=some) == close
             found += len(close)
     backend.close()
     assert found > 100 and skipped > 1000

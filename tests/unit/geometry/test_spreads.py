@@ -115,7 +115,7 @@ def test_capsules_are_around_the_shapes(cell: RobotCell, shapes: dict[str, ArmSh
             knots.append((track, track._placed(q[None], np.zeros((1, 6)), None, np.zeros(1, bool))))
         (a, one), (b, other) = knots
         off = gaps(one, a.radii, other, b.radii)[0]
-        for gap in backend.pairs("robots", "robot1", 5.0, "robot2"):
+        for gap in backend.distances.pairs("robots", "robot1", 5.0, "robot2"):
             met += 1
             assert off[a.names[gap.a], b.names[gap.b]] <= gap.distance + 1e-9, gap
     backend.close()

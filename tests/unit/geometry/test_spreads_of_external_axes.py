@@ -89,12 +89,12 @@ def test_a_tool_in_the_work_piece_on_the_plate_is_seen() -> None:
     deep = MoveJoint(pose_mm(0.0, 0.0, -20.0, 180.0), frame="seam", along=(rail(0.2),))
     leg = planner.leg(planner.home("left"), deep)
     backend.set_joints("left", leg.end.q)
-    near = {(c.a, c.b): c.distance for c in backend.pairs("self", "left", 0.1)}
+    near = {(c.a, c.b): c.distance for c in backend.distances.pairs("self", "left", 0.1)}
     touching = [pair for pair, distance in near.items() if distance < -0.01]
     assert touching and all("left/plate" in pair for pair in touching)
     assert any(c.kind == "self" and c.distance < -0.01 for c in backend.clearances(0.5) or ())
     turned = np.array(leg.end.q)
     turned[-1] += math.pi / 2.0
     backend.set_joints("left", turned)
-    assert backend.pairs("self", "left", 0.1)
+    assert backend.distances.pairs("self", "left", 0.1)
     backend.close()

@@ -389,7 +389,7 @@ def test_what_a_tool_carries_keeps_clear_of_its_own_turntable(
     executor.begin(MoveJoint(Pose(1.7, 0.6, z, math.pi, 0.0, 0.0)), 0.0)
     executor.finish()
     backend.set_joints("robot", executor.q)
-    for found in (backend.clearances(0.5) or (), backend.pairs("self", "robot", 0.5)):  # type: ignore[attr-defined]
+    for found in (backend.clearances(0.5) or (), backend.distances.pairs("self", "robot", 0.5)):  # type: ignore[attr-defined]
         gaps = [c for c in found if (c.a, c.b) == ("robot/box.1", "robot/plate")]
         assert min(c.distance for c in gaps) == pytest.approx(distance, abs=1e-4)
         assert {c.allowed for c in gaps} == {0.001} and not any(c.stands for c in gaps)

@@ -362,7 +362,7 @@ def test_sweeps_measure_the_tool_and_the_part_in_it(cell: RobotCell) -> None:
         backend.set_part(tool)
         backend.set_part(part)
         backend.set_joints("arm", np.array(cell.robots[0].home))
-        found = {(x.a, x.b): x.distance for x in backend.pairs("self", "arm", 1.0)}
+        found = {(x.a, x.b): x.distance for x in backend.distances.pairs("self", "arm", 1.0)}
         seen = [x for x in backend.clearances(1.0) or () if x.kind == "self"]
     finally:
         backend.close()

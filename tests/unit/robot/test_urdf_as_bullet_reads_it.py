@@ -217,7 +217,7 @@ def test_a_thing_of_stl_in_text_is_there(tmp_path: Path) -> None:
         )
         assert found is not None, [e.message for e in d]
         backend = BulletBackend(found, looks=False)
-        (body,) = (s.id for s in backend._distances._standing() if s.whole == "body")
+        (body,) = (s.id for s in backend.distances._standing() if s.whole == "body")
         low, high = backend._p.getAABB(body, physicsClientId=backend._client)
         backend.close()
         assert np.allclose(low, (3.0, 0.0, 0.0), atol=0.01)

@@ -173,12 +173,12 @@ class Judge:
         stays = self._moved if backend is self._backend else ()
         own = {f"{robot}_{what}" for robot in stays for what in ("pedestal", "rail")}
         things = {t for t in backend.things if t not in own}
-        if any(gap.distance <= 0.0 for gap in backend.pairs("self", name, _TOUCHING)):
+        if any(gap.distance <= 0.0 for gap in backend.distances.pairs("self", name, _TOUCHING)):
             return 0.0
-        found = backend.pairs("scene", name, limit, only=things)
+        found = backend.distances.pairs("scene", name, limit, only=things)
         for other in self.cell.robots:
             if other.name != name:
-                found += backend.pairs("robots", name, limit, other.name)
+                found += backend.distances.pairs("robots", name, limit, other.name)
         return min((_counted(c, is_loose) for c in found), default=limit)
 
 
