@@ -94,6 +94,8 @@ class LivePage extends ReplayPage {
 
 /** @type {LivePage | null} */
 let page = null;
+/** This page goes, and comes back for another run: what is told until then is not of its own. */
+let isLeaving = false;
 /** News that have come before the page could take them. */
 /** @type {{updates: any[], pages: number}[]} */
 const queue = [];
@@ -176,9 +178,11 @@ const link = new LiveLink({
 /** @param {any} data */
 function drain(data) {
   const batches = queue.splice(0);
+  if (isLeaving) return;
   for (const { updates, pages } of batches) {
     for (const update of updates) {
       if (update.fresh && page) {
+        isLeaving = true;
         location.reload();
         return;
       }

@@ -107,12 +107,17 @@ class Page:
     def wait(self, condition: str) -> None:
         """Until a condition holds (the page's own policy forbids Playwright's way to wait); an error if it does not."""
         most = PATIENCE_MS
-        self.ask(
-            f"""() => new Promise((done, fail) => {{
-              setTimeout(() => fail(new Error("{most} ms have not been enough")), {most});
-              (function f() {{ ({condition}) ? done() : requestAnimationFrame(f) }})();
-            }})"""
-        )
+        try:
+            self.ask(
+                f"""() => new Promise((done, fail) => {{
+                  setTimeout(() => fail(new Error("{most} ms have not been enough")), {most});
+                  (function f() {{
+                    try {{ ({condition}) ? done() : requestAnimationFrame(f); }} catch (error) {{ fail(error); }}
+                  }})();
+                }})"""
+            )
+        except Exception as problem:
+            raise AssertionError(f"{condition}: {problem}; errors: {self.errors}") from problem
 
     def settled(self) -> None:
         """Until the page has taken what has happened: two frames, so that it has seen sizes, and drawn."""

@@ -56,7 +56,8 @@ class Played:
         with self._trace.open("a", encoding="utf-8") as stream:
             stream.write(text)
 
-    def _fires(self, transition: str, **binding: Any) -> None:
+    def fires(self, transition: str, **binding: Any) -> None:
+        """A step of the supervisor, in its trace."""
         self._steps += 1
         # The robot's journal has real times; a step long before them would be one that the net does not allow.
         self.t = max(self.t + 0.001, time.time() - self.supervisor.began)
@@ -77,7 +78,7 @@ class Played:
     def order(self, n: int) -> None:
         """The supervisor orders."""
         self.supervisor.write("order", (n,))
-        self._fires("Order", n=n)
+        self.fires("Order", n=n)
 
     def accept(self, n: int) -> None:
         """The robot takes the order."""
@@ -95,12 +96,12 @@ class Played:
         """The supervisor hears of it."""
         self.supervisor.read("placed")
         self.supervisor.clear("placed")
-        self._fires("Placed", n=n)
+        self.fires("Placed", n=n)
 
     def end(self, state: Status = Status.FINISHED, reason: str = "") -> None:
         """Both sides end."""
         if self._trace is not None and state is Status.FINISHED:
-            self._fires("Finish")
+            self.fires("Finish")
         self.robot.set_status(state, reason)
         self.supervisor.set_status(state, reason)
         self.close()

@@ -10,8 +10,6 @@ person may interfere with the run, `{"do": "join", "token": ...}` and then `{"do
 from __future__ import annotations
 
 import asyncio
-import base64
-import hashlib
 import json
 import secrets
 import time
@@ -26,6 +24,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pn2code.base.page_json import page_json
 from pn2code.live.hall import Hall
+from pn2code.replay.page import hashed
 from pn2code.replay.served import Served
 
 MOST_PAGES = 64
@@ -41,8 +40,10 @@ PREPARING = (
 PATIENCE_S = 2.0
 """A page that is asked for before it is there waits so long."""
 _LOOK_S = 0.1
-_OWN = base64.b64encode(hashlib.sha256(_AGAIN.encode()).digest()).decode()
-_CLOSED = f"default-src 'none'; script-src 'sha256-{_OWN}'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+_CLOSED = (
+    f"default-src 'none'; script-src {hashed(_AGAIN)}; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
+)
 _WRONG_S = 0.5
 """After a wrong token."""
 

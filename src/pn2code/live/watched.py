@@ -1,7 +1,7 @@
 """One session of a cell that runs elsewhere, as updates for the page (in the form of `news`).
 
     with Watched(cell, session, began, is_from_start=True) as watched:
-        watched.take(tail)                       # what is new in a trace
+        watched.take(tails)                      # what is new in the traces
         watched.see(1.25, texts)                 # what the shared files hold
         watched.update(1.25, seen)               # an update
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pn2code.base.closing import Closing
@@ -73,6 +73,10 @@ class Watched(Closing):
         session: of the supervisor.
         began: when (s, as `time.time` counts).
         is_from_start: whether this watch has seen the session begin.
+
+    Attributes:
+        is_late: whether a trace has come after its steps were inferred: the session is to be watched anew, with all
+            traces from their beginnings.
     """
 
     def __init__(
@@ -88,10 +92,11 @@ class Watched(Closing):
         self._follower = Follower(partition, cell.config.storage, self._occurred)
         self._steps = StepMessages(partition)
         self._observed = Observed(specs_of(partition), session)
+        self.is_late = False
         self._robots = Robots(cell.config, cell.robot_cell, partition, cell.blocks)
         near = cell.robot_cell.scene.warning_clearance
         self.alarms = Alarms(cell.config.report.warn_condition, near)
-        self._has_supervisor_trace = False
+        self._has_supervisor_trace = self._left_out = False
         self._places: tuple[Any, ...] = ()
         self._activity, self._activity_since = "", 0.0
         self._new: Json = {"messages": [], "events": [], "activities": []}
@@ -124,21 +129,29 @@ class Watched(Closing):
 
     # --- what comes ------------------------------------------------------------------------------
 
-    def take(self, tail: Tail) -> None:
-        """What is new in a trace, if it is one of this session."""
-        if not tail.header or not self._is_ours(tail):
-            return
-        if tail.by == "supervisor" and not self._has_supervisor_trace:
+    def take(self, tails: Sequence[Tail]) -> None:
+        """What is new in the traces, of those that are of this session."""
+        ours = [tail for tail in tails if tail.header and self._is_ours(tail)]
+        for tail in ours:  # who writes one decides what is done with the lines of all
+            self._traced_by(tail)
+        for tail in ours:
+            for line in tail.lines:
+                self._line(tail, line)
+
+    def _traced_by(self, tail: Tail) -> None:
+        """Who writes a trace, from its first line."""
+        owners = self._cell.partition.owners
+        named = {"supervisor": [0], "robots": range(1, len(owners))}
+        parties = named.get(tail.by) or [o.index for o in owners if o.name == tail.by]
+        new = {index for index in parties if index not in self._follower.traced}
+        self._follower.traced |= new
+        if 0 in new:
             self._has_supervisor_trace = True
-            self._follower.traced.add(0)
-            if self._follower.game is None:
+            self.is_late |= self._follower.game is not None or bool(self._lost) or self._left_out
+            if not self.is_late:
                 self._follower.begin(tail.header)
-        if tail.by == "robots":
-            self._follower.traced |= set(range(1, len(self._cell.partition.owners)))
-        elif tail.by in self._party:
-            self._follower.traced.add(self._party[tail.by])
-        for line in tail.lines:
-            self._line(tail, line)
+        elif new and self._follower.inferred:
+            self.is_late = True
 
     def _is_ours(self, tail: Tail) -> bool:
         if tail.session:
@@ -147,7 +160,9 @@ class Watched(Closing):
 
     def _line(self, tail: Tail, line: Json) -> None:
         if "transition" in line:
-            if not self._follower.add(line):
+            if not self._has_supervisor_trace:
+                self._left_out = True  # the messages alone explain what all have done
+            elif not self._follower.add(line):
                 tail.unreadable += 1
             return
         if line.get("event") == "end" and tail.by == "supervisor":

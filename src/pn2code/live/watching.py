@@ -59,7 +59,6 @@ class Watching:
         self._looked = False
         self._ended_at: float | None = None
         self._is_told = False
-        self._anew = False
 
     def begin_again(self) -> None:
         """Too much has been told: the next update is a fresh one."""
@@ -110,8 +109,9 @@ class Watching:
             if watched is not None and not self._is_told:
                 is_new = looked == now
                 if is_new:
-                    for tail in tails.look():
-                        watched.take(tail)
+                    watched.take(list(tails.look()))
+                    if watched.is_late:
+                        watched = self._anew(watched, tails)
                 t = self._time()
                 changes = {names[n]: k for n, k in turns.items() if n in names}
                 watched.see(t, texts, changes if waking.counts and "" not in turns else None)
@@ -129,13 +129,24 @@ class Watching:
             self._watched.close()
         tails.again()
         are_first = all(_is_first(text) for text in seen.texts.values())
+        self._is_from_start = self._looked and are_first
         self._watched = Watched(
-            self._cell, seen.session, seen.began, is_from_start=self._looked and are_first
+            self._cell, seen.session, seen.began, is_from_start=self._is_from_start
         )
         self._is_running = seen.sides[self._parties[0]].state is Life.RUNS
         self._began = seen.began
         self._ended_at, self._is_told = None, False
         return True
+
+    def _anew(self, before: Watched, tails: Tails) -> Watched:
+        """The same session from its beginning: a trace has come whose steps were inferred already."""
+        before.close()
+        tails.again()
+        self._watched = Watched(
+            self._cell, before.session, self._began, is_from_start=self._is_from_start
+        )
+        self._watched.take(list(tails.look()))
+        return self._watched
 
     def _time(self) -> float:
         """Seconds since the session began; 0 where nobody knows: then the traces say it."""

@@ -41,7 +41,8 @@ def describe(cell: RobotCell) -> Json:
     gltf = Gltf()
     store = Meshes(gltf)
     arms = [_robot(r, store) for r in cell.moving]
-    shown = [gltf.node(b.name, _looks(b.looks, store)) for b in bodies(cell)]
+    scene = bodies(cell)
+    shown = [gltf.node(b.name, _looks(b.looks, store)) for b in scene]
     kinds = {
         kind.name: gltf.node(
             kind.name,
@@ -56,9 +57,7 @@ def describe(cell: RobotCell) -> Json:
         gltf.scene("parts and tools", list(kinds.values()))
     return {
         "robots": arms,
-        "bodies": [
-            {"name": b.name, "node": node} for b, node in zip(bodies(cell), shown, strict=True)
-        ],
+        "bodies": [{"name": b.name, "node": node} for b, node in zip(scene, shown, strict=True)],
         "kinds": kinds,
         "tools": {
             kind.name: frame(kind.tool.T_flange_tcp)

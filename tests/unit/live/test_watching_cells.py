@@ -168,6 +168,63 @@ def test_without_traces_the_messages_are_explained_also_those_that_nobody_saw(
     played.close()
 
 
+def test_a_supervisor_whose_trace_is_found_late_is_followed_from_its_beginning(
+    watch: Watch, cell: WatchedCell, folder: Path
+) -> None:
+    """What its first messages have told is inferred by then: the same step must not be played twice."""
+    played = Played(folder, cell, "supervisor")
+    trace = folder / "supervisor.trace.jsonl"
+    trace.rename(folder / "later")
+    watch.until(reading)
+    played.supervisor.write("order", (1,))
+    watch.until(lambda u: watch.steps == ["Order"])
+    (folder / "later").rename(trace)
+    played.fires("Order", n=1)
+    watch.until(lambda u: u["fresh"] and watch.steps == ["Order"])
+    played.accept(1)
+    played.report(1)
+    played.placed(1)
+    for n in (2, 3):
+        round_of(played, n)
+    played.end()
+    assert watch.ended()["word"] == "finished"
+    assert watch.steps.count("Order") == 3 and watch.steps[-1] == "Finish" and watch.alarms == []
+    assert "replayed from the trace of supervisor" in watch.of("marking")
+
+
+def test_a_robot_whose_trace_is_found_late_is_followed_from_its_beginning(
+    watch: Watch, cell: WatchedCell, folder: Path
+) -> None:
+    played = Played(folder, cell, "supervisor", "robot")
+    trace = folder / "robot.trace.jsonl"
+    trace.rename(folder / "later")
+    round_of(played, 1)
+    watch.until(lambda u: watch.steps[-1:] == ["Placed"])
+    assert "what robot did is inferred" in watch.of("marking")
+    (folder / "later").rename(trace)
+    for n in (2, 3):
+        round_of(played, n)
+    played.end()
+    assert watch.ended()["word"] == "finished"
+    one = ["Order", "Accept", "Place", "Report", "Placed"]
+    assert watch.steps == [*one * 3, "Finish"] and watch.alarms == []
+    assert watch.of("marking") == "replayed: all sides write traces"
+
+
+def test_where_only_a_robot_writes_a_trace_the_messages_explain_the_steps(
+    watch: Watch, cell: WatchedCell, folder: Path
+) -> None:
+    played = Played(folder, cell, "robot")
+    watch.until(reading)
+    for n in (1, 2, 3):
+        round_of(played, n)
+        watch.until(lambda u, n=n: watch.steps.count("Placed") == n)
+    played.end()
+    assert watch.ended()["word"] == "finished" and watch.alarms == []
+    assert watch.steps.count("Report") == 3
+    assert "inferred from the messages alone" in watch.of("marking")
+
+
 def test_what_the_net_cannot_explain_is_not_shown(
     watch: Watch, cell: WatchedCell, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
