@@ -21,7 +21,7 @@ extern "C" {
 #define PN_CHANNEL_SCALARS 64U
 #endif
 #define PN_CHANNEL_TEXT    (64U * PN_CHANNEL_SCALARS) /* more bytes than a channel's file may have */
-#define PN_CHANNEL_PAYLOAD (PN_CHANNEL_TEXT - 41U)    /* most of line 1 that we write: line 2 fits, however long its seq */
+#define PN_CHANNEL_PAYLOAD (PN_CHANNEL_TEXT - 41U)    /* of line 1 at most: line 2 fits behind it */
 #define PN_CHANNEL_SESSION 16U                        /* bytes of a session's name, terminator included */
 #define PN_CHANNEL_REPORT  512U                       /* bytes of a report */
 
