@@ -256,8 +256,8 @@ def test_a_long_name_of_a_device(tmp_path: Path) -> None:
 
 
 def test_a_message_of_too_many_values(tmp_path: Path) -> None:
-    wide = " * ".join(["INT"] * 65)
-    value = "(" + ", ".join(["1"] * 65) + ")"
+    wide = " * ".join(["INT"] * 1025)
+    value = "(" + ", ".join(["1"] * 1025) + ")"
     net = BASE.replace("  fun rep", f"  colset WIDE = product {wide};\n  fun rep", 1)
     net = net.replace("COLSET", "WIDE").replace("VALUE", value)
     d = Diagnostics()
@@ -265,5 +265,5 @@ def test_a_message_of_too_many_values(tmp_path: Path) -> None:
     (error,) = d.errors
     assert (
         error.code == "channel-limit"
-        and "has 65 values, but at most 64 are possible" in error.message
+        and "has 1,025 values, but at most 1,024 are possible" in error.message
     )

@@ -15,11 +15,10 @@ import pytest
 
 from helpers.netbuilder import cpn
 from pn2code.cell.divide import divide
-from pn2code.cell.limits import MOST_SCALARS
 from pn2code.cell.load import load
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import Scalar, ScalarKind
-from pn2code.channels.message import MAX_PAYLOAD, Message, Refused, compose, parse, specs_of
+from pn2code.cell.scalars import LEAST_ROOM, Scalar, ScalarKind
+from pn2code.channels.message import Message, Refused, compose, parse, specs_of
 from pn2code.channels.scalars import ScalarValue
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
@@ -29,6 +28,8 @@ from pn2code.verify.controller.messages import longest
 pytestmark = pytest.mark.cc
 
 CHANNELS = 90
+PAYLOAD = 64 * LEAST_ROOM - 41
+"""Bytes of line 1 where no message has more values."""
 SIMPLE = (
     "unit", "bool", "int", "int with ~3..4", "int with 0..0", "real", "real with ~1.5..2.5", "string",
     "with red | green | blue | e1", "index ph with 0..5", "intinf", "int with 1..9",
@@ -56,7 +57,7 @@ def declarations(chance: random.Random) -> tuple[str, list[str]]:
             names.append(name)
             continue
         size[name] = sum(size[p] for p in parts)
-        if size[name] > MOST_SCALARS:
+        if size[name] > LEAST_ROOM:
             continue
         if has_list.intersection(parts):
             has_list.add(name)
@@ -70,9 +71,8 @@ def declarations(chance: random.Random) -> tuple[str, list[str]]:
     return "\n  ".join(lines), names
 
 
-def cell(folder: Path, chance: random.Random) -> Partition:
-    """A supervisor that passes a token of each colour set on to a robot."""
-    text, names = declarations(chance)
+def cell(folder: Path, text: str, names: list[str]) -> Partition:
+    """A supervisor that passes a token of each of these declared colour sets on to a robot."""
     used = ["  page Top"]
     sup, rob, toml = ["  page Sup"], ["  page Rob"], []
     for i, name in enumerate(names):
@@ -100,7 +100,7 @@ def cell(folder: Path, chance: random.Random) -> Partition:
 @pytest.fixture(scope="module")
 def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Partition, Codec]]:
     d = Diagnostics()
-    partition = cell(tmp_path_factory.mktemp("cell"), random.Random(11))
+    partition = cell(tmp_path_factory.mktemp("cell"), *declarations(random.Random(11)))
     with codec(partition, d) as compiled:
         assert compiled is not None, [str(i) for i in d]
         yield partition, compiled
@@ -127,9 +127,7 @@ def value(scalar: Scalar, chance: random.Random) -> ScalarValue:
         case ScalarKind.ENUM:
             return chance.choice(scalar.names)
         case ScalarKind.STRING:
-            size = chance.choice(
-                [0, 0, 1, 3, 3, 20, 600, MAX_PAYLOAD // 4, MAX_PAYLOAD - 2, MAX_PAYLOAD - 1]
-            )
+            size = chance.choice([0, 0, 1, 3, 3, 20, 600, PAYLOAD // 4, PAYLOAD - 2, PAYLOAD - 1])
             plain = chance.random() < 0.5
             return "".join(chr(120 if plain else chance.randrange(256)) for _ in range(size))
         case _:
@@ -236,22 +234,46 @@ def test_a_bound_that_colour_sets_prove_is_one(both: tuple[Partition, Codec]) ->
     specs, chance = specs_of(partition), random.Random(3)
     proven = 0
     for i, (channel, spec) in enumerate(zip(partition.channels, specs, strict=True)):
-        most = longest(partition.net.places[channel.place].colset)
+        most = longest(partition.net.places[channel.place].colset, spec.room)
         if most is None:
             continue
         proven += 1
         for _ in range(20):
             values = values_of(spec.scalars, chance)
             text = compose(spec, values, seq=1, session=SESSION)
-            legal = is_legal(spec.scalars, iter(values)) and len(values) <= MOST_SCALARS
+            legal = is_legal(spec.scalars, iter(values)) and len(values) <= spec.room
             assert (text is not None) == legal
             assert text is None or len(text.split("\n")[0]) <= most
             assert compiled.write([(i, 1, values)]) == [None if text is None else text.encode()]
     assert proven > 5
 
 
-@pytest.mark.parametrize("size", [MAX_PAYLOAD - 2, MAX_PAYLOAD - 1])
-def test_the_longest_message(both: tuple[Partition, Codec], size: int) -> None:
+def test_messages_have_room_for_what_their_colour_sets_hold(tmp_path: Path) -> None:
+    """One list with a longest length makes room for as many values in all channels; both sides know how many."""
+    lists = "colset R = list REAL with 0..200;\n  colset B = list BOOL;"
+    partition = cell(tmp_path, lists, ["R", "B", "STRING"])
+    specs, d = specs_of(partition), Diagnostics()
+    assert {(spec.room, spec.max_bytes) for spec in specs} == {(201, 201 * 64)}
+    with codec(partition, d) as compiled:
+        assert compiled is not None, [str(i) for i in d]
+        for length in (0, 1, 63, 64, 99, 100, 199, 200, 201, 999, 1000, 1024):
+            tokens = (length, *[0.5] * length), (length, *[True] * length), ("x" * 64 * length,)
+            for i, values in enumerate(tokens):
+                text = compose(specs[i], values, seq=1, session=SESSION)
+                assert (text is not None) == (length <= 200)
+                assert compiled.write([(i, 1, values)]) == [text.encode() if text else None]
+                by_hand = " ".join(
+                    f'"{v}"' if isinstance(v, str) else str(float(v)) for v in values
+                )
+                file = text or f"{by_hand.replace('.0', '')}\n"
+                found = parse(specs[i], file, session=SESSION, consumed=0)
+                (read,) = compiled.read([(i, 0, file.encode())])
+                assert (read.what == "message") == isinstance(found, Message) == (length <= 200)
+                assert text is None or read.scalars == values
+
+
+@pytest.mark.parametrize("beyond", [0, 1])
+def test_the_longest_message(both: tuple[Partition, Codec], beyond: int) -> None:
     """With the largest number that line 2 can have, it still fits a file."""
     partition, compiled = both
     i = next(
@@ -259,9 +281,11 @@ def test_the_longest_message(both: tuple[Partition, Codec], size: int) -> None:
         for k, c in enumerate(partition.channels)
         if partition.net.places[c.place].colset.name == "S7"
     )
+    spec = specs_of(partition)[i]
+    size = spec.max_payload - 2 + beyond
     (file,) = compiled.write([(i, MOST_SEQ, ("x" * size,))])
-    assert (file is None) == (size > MAX_PAYLOAD - 2)
+    assert (file is None) == (beyond > 0)
     if file is not None:
-        assert len(file) == 4095
+        assert len(file) == spec.max_bytes - 1
         (read,) = compiled.read([(i, MOST_SEQ - 1, file)])
         assert read.scalars == ("x" * size,)

@@ -16,11 +16,14 @@
 extern "C" {
 #endif
 
-#define PN_CHANNEL_SCALARS 64U   /* most scalars of a message or of an input file */
-#define PN_CHANNEL_TEXT    4096U /* more bytes than a channel's file may have */
-#define PN_CHANNEL_PAYLOAD 4055U /* most bytes of line 1 that we write: line 2 fits behind it, however long its seq */
-#define PN_CHANNEL_SESSION 16U   /* bytes of a session's name, terminator included */
-#define PN_CHANNEL_REPORT  512U  /* bytes of a report */
+/* Most scalars of a message or of an input file. The Makefile of a cell whose colour sets hold more says so. */
+#ifndef PN_CHANNEL_SCALARS
+#define PN_CHANNEL_SCALARS 64U
+#endif
+#define PN_CHANNEL_TEXT    (64U * PN_CHANNEL_SCALARS) /* more bytes than a channel's file may have */
+#define PN_CHANNEL_PAYLOAD (PN_CHANNEL_TEXT - 41U)    /* of line 1 at most: line 2 fits behind it */
+#define PN_CHANNEL_SESSION 16U                        /* bytes of a session's name, terminator included */
+#define PN_CHANNEL_REPORT  512U                       /* bytes of a report */
 
 /* Why a message is not taken (I6). */
 typedef enum pn_refusal {

@@ -404,7 +404,7 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_s
 static bool length_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
                          pn_message_t *out)
 {
-    bool good = (word->length <= 2U) && ((word->length == 1U) || (word->text[0] != '0'));
+    bool good = (word->length <= 4U) && ((word->length == 1U) || (word->text[0] != '0'));
     for (size_t i = 0U; good && (i < word->length); i++) {
         const int digit = word->text[i] - '0';
         good = is_digit(word->text[i]);

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, Input
-from pn2code.cell.scalars import least_values, message_scalars
+from pn2code.cell.scalars import MOST_ROOM, least_values, message_scalars
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 
@@ -15,8 +15,7 @@ MOST_CHANNELS = 128
 MOST_PEERS = 64
 
 
-MOST_SCALARS = 64
-"""What cnative/include/pn/pn_cell.h and pn_channel.h have room for."""
+"""What cnative/include/pn/pn_cell.h has room for."""
 
 
 def report_limits(
@@ -45,10 +44,10 @@ def report_limits(
     ):
         flat = net.places[place]
         count = least_values(message_scalars(flat.colset) or ())
-        if count > MOST_SCALARS:
+        if count > MOST_ROOM:
             d.error(
                 codes.CHANNEL_LIMIT,
-                f"a message of `{name}` has {count} values, but at most {MOST_SCALARS} are possible",
+                f"a message of `{name}` has {count:,} values, but at most {MOST_ROOM:,} are possible",
                 flat.origins[0],
                 hint=f"divide colour set `{flat.colset.name}` among several places",
             )

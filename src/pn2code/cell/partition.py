@@ -11,6 +11,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from pn2code.base.frozen import frozen
+from pn2code.cell.scalars import message_room
 from pn2code.net.flat import FlatNet
 
 if TYPE_CHECKING:
@@ -108,6 +109,12 @@ class Partition:
     primitives: Mapping[int, Primitive] = field(default_factory=dict, compare=False)
     config: CellConfig | None = field(default=None, compare=False)
     failed_places: tuple[int, ...] = field(default=(), compare=False)
+
+    @property
+    def message_room(self) -> int:
+        """How many values a message or an input file has at most, in this cell."""
+        places = [*(c.place for c in self.channels), *(i.place for i in self.inputs)]
+        return message_room(self.net.places[p].colset for p in places)
 
     def failed(self, final: Iterable[str]) -> list[str]:
         """Which of some final places, by name, mean that the cell has failed."""

@@ -12,7 +12,7 @@ hold lists, too: a list is a `Scalar`, with those of its elements in it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from enum import Enum
 
 from pn2code.base.frozen import frozen
@@ -21,6 +21,10 @@ from pn2code.ml.core.types import REAL
 
 TIMES = (-(2**30), 2**30 - 1)
 """The times of an integer clock that a message can carry: those that fit into an integer of a script."""
+
+
+LEAST_ROOM, MOST_ROOM = 64, 1024
+"""Values for which each cell has room in a message, and for which a cell can have room."""
 
 
 class ScalarKind(Enum):
@@ -91,6 +95,14 @@ def most_values(scalars: Sequence[Scalar]) -> int | None:
     if any(s.kind is ScalarKind.LIST and s.high is None for s in scalars):
         return None
     return sum(1 + int(s.high or 0) * len(s.elements) for s in scalars)
+
+
+def message_room(colsets: Iterable[Colset]) -> int:
+    """For how many values a cell has room in a message, in all channels alike: for the largest token of these colour
+    sets. A list without a longest length counts as nothing, and so has the least room that there is.
+    """
+    found = (most_values(message_scalars(c) or ()) or 0 for c in colsets)
+    return min(max(LEAST_ROOM, *found, LEAST_ROOM), MOST_ROOM)
 
 
 def scalars_of(

@@ -31,8 +31,6 @@ from pn2code.base.closing import Closing
 from pn2code.base.frozen import frozen, record
 from pn2code.channels.message import (
     EMPTY,
-    MAX_BYTES,
-    MAX_PAYLOAD,
     ChannelSpec,
     Message,
     Reason,
@@ -50,6 +48,9 @@ LOOK_S = 0.1
 """I8: how often the other side's lock and status are looked at."""
 
 _AWAIT_S = 0.005
+
+_STATUS_BYTES = 4096
+"""Of a status file that are read."""
 
 _PID = re.compile(r"[0-9]{1,18}")
 
@@ -299,7 +300,7 @@ class SharedDirectory(Closing):
         message = compose(spec, scalars, seq=state.sent + 1, session=self.session or "-")
         if message is None:
             shown = ", ".join(quote(repr(s)) for s in scalars)
-            why = f"no token of its colour set, not finite, or more than {MAX_PAYLOAD} bytes"
+            why = f"no token of its colour set, not finite, or more than {spec.max_payload:,} bytes"
             text = f"{shown} cannot be written to {spec.file}: {why}"
             return NotWritten(spec.name, spec.file, "channel-value", text)
         self._publish(spec.file, message)
@@ -320,7 +321,7 @@ class SharedDirectory(Closing):
 
     def _content(self, spec: ChannelSpec) -> str | Refused:
         try:
-            data = read_at_once(self.path / spec.file, MAX_BYTES)
+            data = read_at_once(self.path / spec.file, spec.max_bytes)
         except FileNotFoundError:
             if not self.path.is_dir():
                 raise
@@ -438,7 +439,7 @@ def _write_new(path: Path, data: bytes) -> None:
 def read_status(path: Path) -> StatusFile | None:
     """What a status file says; None: it is not there, is being written, or is none."""
     try:
-        text = read_at_once(path, MAX_BYTES).decode("utf-8", errors="replace")
+        text = read_at_once(path, _STATUS_BYTES).decode("utf-8", errors="replace")
     except FileNotFoundError:
         return None
     lines = [*text.split("\n"), "", "", ""]

@@ -13,7 +13,7 @@ from enum import Enum
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind, Partition
-from pn2code.cell.scalars import Scalar, message_scalars
+from pn2code.cell.scalars import LEAST_ROOM, Scalar, message_scalars
 from pn2code.channels.scalars import (
     Malformed,
     ScalarValue,
@@ -25,11 +25,8 @@ from pn2code.channels.scalars import (
 EMPTY = "0\n"
 """The content of a channel without a message."""
 
-MAX_BYTES = 4096
-"""No file is as long."""
-
-MAX_PAYLOAD = 4055
-"""Most bytes of line 1 that are written: line 2 fits behind it, however long its seq."""
+_PER_VALUE, _LINE_2 = 64, 41
+"""Bytes of a file for each value that there is room for, and those of them that line 2 needs."""
 
 
 @frozen
@@ -42,6 +39,7 @@ class ChannelSpec:
         scalars: what a token is made of.
         writer, reader: names of the parties, "supervisor", "robot1".
         kind: data are written before the flags that announce them (I5).
+        room: values that a message has at most: `PN_CHANNEL_SCALARS` of pn_channel.h.
     """
 
     name: str
@@ -50,6 +48,17 @@ class ChannelSpec:
     writer: str
     reader: str
     kind: ChannelKind
+    room: int = LEAST_ROOM
+
+    @property
+    def max_bytes(self) -> int:
+        """No file is as long."""
+        return _PER_VALUE * self.room
+
+    @property
+    def max_payload(self) -> int:
+        """Most bytes of line 1 that are written: line 2 fits behind it, however long its seq."""
+        return self.max_bytes - _LINE_2
 
 
 class Reason(Enum):
@@ -103,6 +112,7 @@ def specs_of(partition: Partition) -> tuple[ChannelSpec, ...]:
                 writer=partition.owners[channel.writer].name,
                 reader=partition.owners[channel.reader].name,
                 kind=channel.kind,
+                room=partition.message_room,
             )
         )
     return tuple(specs)
@@ -116,8 +126,8 @@ def compose(
     spec: ChannelSpec, values: Sequence[ScalarValue], *, seq: int, session: str
 ) -> str | None:
     """The whole file; None when the values do not fit the channel."""
-    payload = format_scalars(spec.scalars, values)
-    if payload is None or not 0 < len(payload) <= MAX_PAYLOAD:
+    payload = format_scalars(spec.scalars, values, spec.room)
+    if payload is None or not 0 < len(payload) <= spec.max_payload:
         return None
     return f"{payload}\n# {seq} {session} {_seal(payload, seq, session)}\n"
 
@@ -138,7 +148,7 @@ def parse(spec: ChannelSpec, text: str, *, session: str, consumed: int) -> Messa
     def refused(reason: Reason, words: str) -> Refused:
         return Refused(spec.name, spec.file, reason, text, words)
 
-    if len(text) >= MAX_BYTES or "\0" in text:
+    if len(text) >= spec.max_bytes or "\0" in text:
         return refused(Reason.SHAPE, f"{quote(text)} is too long, or has a zero byte in it")
     first, _, rest = text.partition("\n")
     second, _, more = rest.partition("\n")
@@ -160,7 +170,7 @@ def parse(spec: ChannelSpec, text: str, *, session: str, consumed: int) -> Messa
             return refused(Reason.SESSION, f"a message of session {match[2]}; {session} is running")
     if is_empty(text):
         return None
-    values = parse_scalars(spec.scalars, payload)
+    values = parse_scalars(spec.scalars, payload, spec.room)
     if isinstance(values, Malformed):
         reason = Reason.COUNT if values.wrong_count else Reason.SCALAR
         return refused(reason, f"column {values.column}: {values.text}")

@@ -16,15 +16,12 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.scalars import Scalar, ScalarKind
+from pn2code.cell.scalars import MOST_ROOM, Scalar, ScalarKind
 
 ScalarValue = bool | int | float | str
 """BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1. LIST: its length, and
 then the values of its elements.
 """
-
-MOST_VALUES = 64
-"""Of a message: `PN_CHANNEL_SCALARS` of pn_channel.h."""
 
 
 @frozen
@@ -182,10 +179,12 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
             return value if isinstance(value, str) and _is_constructor(scalar, value) else None
 
 
-def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str | None:
+def format_scalars(
+    scalars: Sequence[Scalar], values: Sequence[ScalarValue], room: int = MOST_ROOM
+) -> str | None:
     """One line without its end; None when the values do not fit (their number, their kinds, not finite)."""
     of_each = scalars_of_values(scalars, values)
-    if of_each is None or len(values) > MOST_VALUES:
+    if of_each is None or len(values) > room:
         return None
     words = [_format_scalar(s, v) for s, v in zip(of_each, values, strict=True)]
     return None if any(w is None for w in words) else " ".join(w for w in words if w is not None)
@@ -193,8 +192,8 @@ def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> 
 
 _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
-_LENGTH = re.compile(r"0|[1-9][0-9]?")
-"""Of a list: no message has as many values as to need three digits."""
+_LENGTH = re.compile(r"0|[1-9][0-9]{0,3}")
+"""Of a list: no message has as many values as to need five digits."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _MOST_NAMES = 8
@@ -287,8 +286,10 @@ class _Wrong(str):
     __slots__ = ()
 
 
-def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ...] | Malformed:
-    """Reads one line strictly: exactly these scalars, separated by blanks."""
+def parse_scalars(
+    scalars: Sequence[Scalar], line: str, room: int = MOST_ROOM
+) -> tuple[ScalarValue, ...] | Malformed:
+    """Reads one line strictly: exactly these scalars, separated by blanks, and no more than there is room for."""
     values: list[ScalarValue] = []
     walk = Walk(scalars)
     for match in _WORD.finditer(line):
@@ -304,8 +305,8 @@ def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ..
         values.append(value)
         if scalar.kind is ScalarKind.LIST:
             walk.enter(scalar, int(value))
-        if len(values) + walk.rest > MOST_VALUES:
-            text = f"{quote(match[0])} makes more than the {MOST_VALUES} values that are possible"
+        if len(values) + walk.rest > room:
+            text = f"{quote(match[0])} makes more than the {room:,} values that are possible"
             return Malformed(text, match.start() + 1, True)
     if walk.rest:
         expected = len(values) + walk.rest

@@ -154,7 +154,9 @@ def _programs(
 ) -> tuple[supervisor.Report, tuple[robot.RobotReport, ...]] | None:
     stage("comparing the supervisor with the net ...")
     own = [f for f in files if f.path in PROGRAM]
-    with programs.program(HOST, own, d) as program:
+    with programs.program(
+        HOST.with_room(comparison.made.partition.message_room), own, d
+    ) as program:
         if program is None:
             return None
         supervised = comparison.supervisor(program)

@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 
+from pn2code.cell.scalars import LEAST_ROOM
+
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 """Sums of products are rounded as in the token game, on every processor. They come after the user's flags."""
@@ -66,6 +68,11 @@ def _lengths(generated: str) -> Iterator[int]:
     while begin >= 0 and (end := text.find("\n}\n", begin + 2)) >= 0:
         yield end + 1 - begin
         begin = text.find("\n{\n", end + 2)
+
+
+def for_messages(room: int) -> tuple[str, ...]:
+    """What each compiler of channels is told where messages of a cell have more values than most."""
+    return (f"-DPN_CHANNEL_SCALARS={room}U",) if room > LEAST_ROOM else ()
 
 
 def for_net(generated: str) -> tuple[str, ...]:

@@ -215,6 +215,7 @@ def emit(
         has_simulate=True,
         resets=_resets(compiled) if compiled is not None else _ANY,
         c_flags=c_flags,
+        message_flags=c_flags.for_messages(partition.message_room),
         net_flags=" ".join(c_flags.for_net(net_text)),
         needs=required,
     )

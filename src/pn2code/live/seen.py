@@ -20,8 +20,6 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 from pn2code.channels import ChannelSpec, StatusFile, read_at_once, read_status
 
-MOST_BYTES = 8192
-"""Of a file that are read: twice as many as a message may have."""
 _LOCKS = Path("/proc/locks")
 
 
@@ -86,12 +84,12 @@ class Eye:
         session = status.session if status is not None else ""
         locked = _locked()
         sides = {name: self._side(name, session, locked) for name in self._parties}
-        texts = {spec.name: self._text(spec.file) for spec in self._specs}
+        texts = {spec.name: self._text(spec) for spec in self._specs}
         return Seen(self._folder.is_dir(), session, self._time(supervisor), sides, texts)
 
     def texts(self) -> dict[str, str | None]:
         """The channels alone: what can change quickest."""
-        return {spec.name: self._text(spec.file) for spec in self._specs}
+        return {spec.name: self._text(spec) for spec in self._specs}
 
     def _time(self, side: str) -> float:
         try:
@@ -131,9 +129,10 @@ class Eye:
             return True
         return inode not in self._had_lock and is_alive(status.pid)
 
-    def _text(self, file: str) -> str | None:
+    def _text(self, spec: ChannelSpec) -> str | None:
+        """Twice as much is read as a message may have: one that is too long shows that it is."""
         try:
-            return read_at_once(self._folder / file, MOST_BYTES).decode("latin-1")
+            return read_at_once(self._folder / spec.file, 2 * spec.max_bytes).decode("latin-1")
         except OSError:
             return None
 

@@ -18,7 +18,7 @@ from typing import NoReturn, Protocol
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
-from pn2code.cell.scalars import Scalar, ScalarKind
+from pn2code.cell.scalars import MOST_ROOM, Scalar, ScalarKind
 from pn2code.channels import GRACE_S, LOOK_S, ChannelSpec, PeerState, SharedDirectory
 from pn2code.robot.commands import Command, Measure, Pose
 from pn2code.run.files import DirectoryError, RobotFiles, directory_error
@@ -105,6 +105,7 @@ def script_specs(program: CheckedProgram, robot: str) -> tuple[ChannelSpec, ...]
                 writer=robot if out else "supervisor",
                 reader="supervisor" if out else robot,
                 kind=ChannelKind.FLAG if out else ChannelKind.DATA,
+                room=MOST_ROOM,
             )
         )
     return tuple(specs)

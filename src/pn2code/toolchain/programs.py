@@ -23,6 +23,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache, lru_cache
 from pathlib import Path
@@ -90,6 +91,10 @@ class Host:
     also: tuple[str, ...] = ()
     instead: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
+
+    def with_room(self, values: int) -> Host:
+        """With room for so many values in a message."""
+        return replace(self, flags=(*self.flags, *c_flags.for_messages(values)))
 
     def runtime(self) -> tuple[OutputFile, ...]:
         """The C runtime as this host needs it."""

@@ -107,7 +107,7 @@ def codec(partition: Partition, d: Diagnostics) -> Iterator[Codec | None]:
         compiled=None,
     )
     own = [f for f in files if f.path == "cell_config.c"]
-    with programs.program(HOST, own, d) as program:
+    with programs.program(HOST.with_room(partition.message_room), own, d) as program:
         yield None if program is None else Codec(program, partition)
 
 

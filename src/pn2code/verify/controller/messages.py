@@ -16,11 +16,10 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
-from pn2code.cell.scalars import Scalar, ScalarKind, message_scalars, most_values
+from pn2code.cell.scalars import MOST_ROOM, Scalar, ScalarKind, message_scalars, most_values
 from pn2code.cell.token_values import message_values
-from pn2code.channels.message import MAX_PAYLOAD, Message, compose, parse, specs_of
+from pn2code.channels.message import ChannelSpec, Message, compose, parse, specs_of
 from pn2code.channels.scalars import (
-    MOST_VALUES,
     ScalarValue,
     format_scalars,
     quote,
@@ -61,13 +60,18 @@ class Unsendable:
     says: str
 
 
-def longest(colset: Colset) -> int | None:
-    """Characters of the longest text of a token of which each can be written and read back; None: its values decide."""
+def longest(colset: Colset, room: int) -> int | None:
+    """Characters of the longest text of a token of which each can be written and read back; None: its values decide.
+
+    Args:
+        colset: of the channel.
+        room: values that a message of the cell has at most.
+    """
     scalars = message_scalars(colset)
     if scalars is None or _is_unlimited(colset):
         return None
     most = most_values(scalars)
-    if most is None or most > MOST_VALUES:
+    if most is None or most > room:
         return None
     lengths = [_longest(x) for s in scalars for x in (s, *s.elements * int(s.high or 0))]
     known = [n for n in lengths if n is not None]
@@ -81,7 +85,7 @@ def _longest(scalar: Scalar) -> int | None:
         case ScalarKind.INT | ScalarKind.INDEX:
             return _INTEGER
         case ScalarKind.LIST:
-            return len(str(MOST_VALUES))
+            return len(str(MOST_ROOM))
         case ScalarKind.ENUM:
             return max(map(len, scalar.names))
         case _:
@@ -105,9 +109,10 @@ def examine(partition: Partition, found: Exploration | None, d: Diagnostics) -> 
     net = partition.net
     asked: list[tuple[int, Any]] = []
     is_open = False
-    for index, channel in enumerate(partition.channels):
-        most = longest(net.places[channel.place].colset)
-        if most is not None and most <= MAX_PAYLOAD:
+    specs = specs_of(partition)
+    for index, (channel, spec) in enumerate(zip(partition.channels, specs, strict=True)):
+        most = longest(net.places[channel.place].colset, spec.room)
+        if most is not None and most <= spec.max_payload:
             continue
         bounds = found.bounds if found is not None else None
         bound = bounds[channel.place] if bounds else None
@@ -151,7 +156,7 @@ def _wrong(
         spec, values = specs[index], tuple(message_values(colset, value))
         text = compose(spec, values, seq=MOST_SEQ, session=SESSION)
         if text is None:
-            yield partition.channels[index], value, _reason(spec.scalars, values)
+            yield partition.channels[index], value, _reason(spec, values)
             continue
         parsed = parse(spec, text, session=SESSION, consumed=MOST_SEQ - 1)
         if not isinstance(parsed, Message) or parsed.scalars != values:
@@ -171,10 +176,11 @@ def _wrong(
                 yield partition.channels[index], value, "its two sides do not agree on its text"
 
 
-def _reason(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str:
+def _reason(spec: ChannelSpec, values: Sequence[ScalarValue]) -> str:
     """Why a message cannot be written."""
-    if len(values) > MOST_VALUES:
-        return f"it has {len(values):,} values, but at most {MOST_VALUES} are possible"
+    scalars = spec.scalars
+    if len(values) > spec.room:
+        return f"it has {len(values):,} values, but at most {spec.room:,} are possible"
     for scalar, value in zip(scalars_of_values(scalars, values) or (), values, strict=False):
         if scalar.kind is not ScalarKind.LIST and format_scalars((scalar,), (value,)) is None:
             where = f"`{scalar.label}` of colour set `{scalar.colset}`"
@@ -183,4 +189,4 @@ def _reason(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str:
             return f"{where} is {quote(str(value))}, which a reader refuses"
     text = format_scalars(scalars, values)
     size = len(text) if text is not None else 0
-    return f"it has {size:,} bytes, but at most {MAX_PAYLOAD:,} are possible"
+    return f"it has {size:,} bytes, but at most {spec.max_payload:,} are possible"
