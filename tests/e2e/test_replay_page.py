@@ -331,6 +331,13 @@ class TestRivetingCell:
 
     def test_search_finds_transitions_places_and_values(self, browser: Page) -> None:
         field = browser.page.get_by_role("combobox", name="Find a transition")
+        field.fill("robot")
+        # What Enter would take is told to who hears the page.
+        for key, at in (("ArrowDown", 1), ("ArrowUp", 0)):
+            field.press(key)
+            chosen = browser.page.locator("#found [aria-selected=true]")
+            assert chosen.get_attribute("id") == field.get_attribute("aria-activedescendant")
+            assert chosen.get_attribute("id") == f"found-{at}"
         for word, kind in (
             ("moveLinear", "transition"),
             ("dadosrobo1", "place"),

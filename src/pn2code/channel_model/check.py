@@ -404,7 +404,7 @@ def _explored(
             run.options,
             traces=Path(folder),
             sizes=sizes,
-            questions=choices + (_question(net) if judged else ""),
+            questions=choices + (_question(net) if judged else "") + f"? bound {net.verdict} 0 0\n",
             evidence=Path(folder),
         )
         found = explore(net.net, storage, mine, run.d, options)
@@ -450,14 +450,20 @@ def _evidence(
     """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
     teller = RunText(net, storage)
     seen: set[Fault | None] = set() if judged else {None}
-    for trace in sorted(found.traces, key=lambda t: t.steps):
-        lines, fault = teller.told(trace.file)
+    *of_ends, of_faults = found.answers or [None]
+    kept = [(trace.steps, trace.file) for trace in found.traces]
+    if (
+        of_faults is not None and of_faults["trace"]
+    ):  # other dead markings may have had all the room
+        kept.append((of_faults["steps"], Path(of_faults["trace"])))
+    for steps, trace in sorted(kept, key=lambda run: run[0]):
+        lines, fault = teller.told(trace)
         if fault not in seen:
             seen.add(fault)
-            yield Evidence(fault, trace.steps, lines)
-    for answer in (
-        found.answers
-    ):  # nothing is asked of a cell without final places: it is made to go on for ever
+            yield Evidence(fault, steps, lines)
+    for (
+        answer
+    ) in of_ends:  # nothing is asked of a cell without final places: it is made to go on for ever
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -485,6 +491,6 @@ def _verdict(
         return "no", _STUCK
     if not found.complete:
         return "inconclusive", _incomplete(found.why)
-    if judged and any(a["answer"] != "yes" for a in found.answers):
+    if judged and any(a["answer"] != "yes" for a in found.answers[:-1]):
         return "no", _STUCK
     return "yes", ""
