@@ -208,9 +208,10 @@ def _trace(
     from pn2code.semantics.evaluation.constants import compute
     from pn2code.semantics.evaluation.files import Files
 
-    if net is None:
+    is_trace = _is_trace(trace, form)
+    if is_trace and net is None:
         _refuse(f"`{trace}` is a trace, but no net is named", "pn2code show TRACE NET", form)
-    if not _is_trace(trace, form):
+    if net is None or not is_trace:
         _refuse(
             f"`{trace}` is neither the folder of a run nor a trace: its first line is not the head of one",
             "traces come from `run`, `simulate --trace` and `verify`",
