@@ -145,7 +145,7 @@ def test_what_cannot_be_shown_is_said(
     for arguments, why in (
         ((trace,), "no net is named"),
         ((tmp_path / "missing.jsonl", net), "cannot read"),
-        ((tmp_path / "missing",), "No such file or directory"),
+        ((tmp_path / "missing",), "cannot read"),
         ((tmp_path / "text.jsonl",), "neither the folder of a run nor a trace"),
         ((tmp_path / "text.jsonl", net), "neither the folder of a run nor a trace"),
         ((tmp_path / "empty",), "`pn2code run` writes it"),
