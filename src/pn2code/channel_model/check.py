@@ -450,20 +450,17 @@ def _evidence(
     """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
     teller = RunText(net, storage)
     seen: set[Fault | None] = set() if judged else {None}
-    *of_ends, of_faults = found.answers or [None]
+    of_ends, of_faults = found.answers[:-1], found.answers[-1:]
     kept = [(trace.steps, trace.file) for trace in found.traces]
-    if (
-        of_faults is not None and of_faults["trace"]
-    ):  # other dead markings may have had all the room
-        kept.append((of_faults["steps"], Path(of_faults["trace"])))
+    # Other dead markings may have had all the room.
+    kept += [(a["steps"], Path(a["trace"])) for a in of_faults if a["trace"]]
     for steps, trace in sorted(kept, key=lambda run: run[0]):
         lines, fault = teller.told(trace)
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, steps, lines)
-    for (
-        answer
-    ) in of_ends:  # nothing is asked of a cell without final places: it is made to go on for ever
+    # Nothing is asked of the ends of a cell without final places: it is made to go on for ever.
+    for answer in of_ends:
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
