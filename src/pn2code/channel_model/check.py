@@ -404,7 +404,9 @@ def _explored(
             run.options,
             traces=Path(folder),
             sizes=sizes,
-            questions=choices + (_question(net) if judged else "") + f"? bound {net.verdict} 0 0\n",
+            questions=choices
+            + (_question(net) if judged else _TO_THE_END)
+            + f"? bound {net.verdict} 0 0\n",
             evidence=Path(folder),
         )
         found = explore(net.net, storage, mine, run.d, options)
@@ -431,6 +433,10 @@ def _explored(
         assumes=assumes,
         evidence=runs,
     )
+
+
+_TO_THE_END = "true\n? initially 0\n"
+"""A question without which the first fault would answer all of them, and end the exploration."""
 
 
 def _question(net: ChannelModel) -> str:
