@@ -134,7 +134,7 @@ def _is_possible(shown: Json, word: str) -> bool:
         return True
     typer.echo(
         f"pn2code: the {word} is shown to step {refused['step'] - 1}: the next is not possible in this net "
-        f"({refused['transition']}: {refused['why']})",
+        f"({': '.join(filter(None, (refused['transition'], refused['why'])))})",
         err=True,
     )
     return False
