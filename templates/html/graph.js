@@ -21,6 +21,7 @@
   }
   tools.hidden = false;
   sheet.tabIndex = 0;
+  sheet.setAttribute("role", "group");
   sheet.setAttribute("aria-label", "State space: plus and minus zoom, arrow keys move, 0 shows all");
 
   // Units of the drawing for each pixel.
@@ -125,6 +126,8 @@
     look(place.x + place.width / 2, place.y + place.height / 2, Math.min(whole.width, size().width));
     sheet.parentNode.scrollIntoView({ block: "nearest" });
     sheet.dataset.node = number;
+    // The link that led here may be gone, and the browser has taken the focus from it.
+    if (document.activeElement === document.body) { sheet.focus({ preventScroll: true }); }
   }
   window.addEventListener("hashchange", show);
 

@@ -2,11 +2,11 @@
 /** Curves over the time: clearance and conditioning, each kind in a chart with the limit of which it is warned. */
 
 import { upperBound } from "./course.js";
-import { shorten } from "./dom.js";
+import { fitting } from "./dom.js";
 
-/** Where the axis begins, and how high a line of a legend is. */
-export const LEFT = 108;
+/** How high a line of a legend is, and how wide what shows the colour. */
 export const LABEL = 11;
+const SWATCH = 13;
 /** An axis ends at so many times the limit: a singularity must not make all else a line. */
 const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
@@ -27,6 +27,21 @@ export function legendHeight(drawn) {
  */
 function look(i) {
   return { colour: CURVES[i % CURVES.length], isDashed: Math.floor(i / CURVES.length) % 2 === 1 };
+}
+
+/** @param {any} curve */
+function named(curve) {
+  return curve.of.replace(/^(scene|self)\./, "$1 ");
+}
+
+/**
+ * How much room what stands to the left of the charts wants.
+ * @param {CanvasRenderingContext2D} c
+ * @param {any[]} drawn
+ */
+export function legendWidth(c, drawn) {
+  const wide = (/** @type {string} */ text) => c.measureText(text).width;
+  return Math.max(0, ...drawn.flatMap((chart) => [wide(chart.title), ...chart.curves.map((/** @type {any} */ curve) => wide(named(curve)) + SWATCH + 4)]));
 }
 
 /**
@@ -70,12 +85,13 @@ export function drawChart(c, axis, chart, y, w) {
   c.fillText(chart.title, 8, y + 8);
   c.save();
   c.beginPath();
-  c.rect(LEFT, y - 1, w - LEFT, CURVE + 2);
+  c.rect(axis.left, y - 1, w - axis.left, CURVE + 2);
   c.clip();
   c.strokeStyle = "#D55E00";
+  c.lineWidth = 1;
   c.setLineDash([3, 3]);
   c.beginPath();
-  c.moveTo(LEFT, at(chart.limit));
+  c.moveTo(axis.left, at(chart.limit));
   c.lineTo(w, at(chart.limit));
   c.stroke();
   c.setLineDash([]);
@@ -101,11 +117,29 @@ export function drawChart(c, axis, chart, y, w) {
     c.stroke();
   });
   c.restore();
-  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-    const { colour, isDashed } = look(i);
-    c.fillStyle = colour;
-    c.fillText(shorten(`${isDashed ? "- " : ""}${curve.of.replace(/^(scene|self)\./, "$1 ")}`, 14), 8, y + LEGEND + i * LABEL);
-  });
+  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => drawLegend(c, axis, curve, i, y + LEGEND + i * LABEL));
+}
+
+/**
+ * Its name is in the colour of texts: not all colours of curves can be read on all grounds.
+ * @param {CanvasRenderingContext2D} c
+ * @param {any} axis as above
+ * @param {any} curve
+ * @param {number} i which one of its chart
+ * @param {number} y
+ */
+function drawLegend(c, axis, curve, i, y) {
+  const { colour, isDashed } = look(i);
+  c.strokeStyle = colour;
+  c.lineWidth = 3;
+  c.setLineDash(isDashed ? [5, 3] : []);
+  c.beginPath();
+  c.moveTo(8, y);
+  c.lineTo(8 + SWATCH, y);
+  c.stroke();
+  c.setLineDash([]);
+  c.fillStyle = axis.ink?.text ?? "";
+  c.fillText(fitting(c, named(curve), axis.left - SWATCH - 16), 12 + SWATCH, y);
 }
 
 /**

@@ -67,6 +67,18 @@ export function shorten(text, most) {
   return text.length <= most ? text : `${text.slice(0, most - 1)}…`;
 }
 
+/**
+ * As much of a text as has room.
+ * @param {CanvasRenderingContext2D} c
+ * @param {string} text
+ * @param {number} room in CSS pixels
+ */
+export function fitting(c, text, room) {
+  let most = text.length;
+  while (most > 1 && c.measureText(shorten(text, most)).width > room) most--;
+  return shorten(text, most);
+}
+
 /** Whether the system asks for no motion. */
 export function isStill() {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;

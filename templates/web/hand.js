@@ -43,7 +43,7 @@ export class Hand {
    * @param {string} [kind]
    */
   button(party, text, wish, kind) {
-    return el("button", { text, class: kind, "aria-label": `${text}: ${party}`, onclick: () => this.actions.wish({ ...wish, party }) });
+    return el("button", { text, class: kind, "aria-label": [text, party, wish.channel].filter(Boolean).join(": "), onclick: () => this.actions.wish({ ...wish, party }) });
   }
 
   sensorTable() {

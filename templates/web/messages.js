@@ -9,6 +9,8 @@ import { findSteps } from "./sent.js";
 const ROW = 24;
 /** How wide the column of a party may be, and how much of the pane all of them: what the messages say is to be seen. */
 const COLUMN = { least: 14, most: 84, all: 0.5 };
+/** Of a party: how high a row of names is, and how far one is from the next one. */
+const NAME = { height: 17, gap: 8 };
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -28,8 +30,12 @@ export class Messages {
     /** The step that writes or takes each, 0: not known. */
     this.steps = /** @type {number[]} */ ([]);
     findSteps(this.messages, clock.course, this.steps);
-    const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
-    host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));
+    /** @type {HTMLElement[]} */
+    this.heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
+    /** What leads from a name to its column. @type {HTMLElement[]} */
+    this.leads = this.parties.map(() => el("span", { class: "lead" }));
+    this.names = el("div", { class: "names" }, ...this.leads, ...this.heads);
+    host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), this.names));
     /** Of a party; it follows from the width of the pane. */
     this.column = COLUMN.most;
     this.list = new LongList(host, {
@@ -50,10 +56,32 @@ export class Messages {
   fit(host) {
     const room = Math.floor((host.clientWidth * COLUMN.all) / Math.max(this.parties.length, 1));
     const column = Math.min(Math.max(room, COLUMN.least), COLUMN.most);
-    host.style.setProperty("--party", `${column}px`);
+    if (host.clientWidth) this.arrange(column);
     if (column === this.column || !host.clientWidth) return;
     this.column = column;
     this.list.paint();
+  }
+
+  /**
+   * The name of each party stands above its line, in the first row in which no other name is in its way.
+   * @param {number} column
+   */
+  arrange(column) {
+    const room = this.names.clientWidth;
+    /** Where the last name of a row ends. */
+    const ends = /** @type {number[]} */ ([]);
+    this.heads.forEach((head, i) => {
+      const [middle, width] = [(i + 0.5) * column, Math.min(head.scrollWidth, room)];
+      const left = Math.max(Math.min(middle - width / 2, room - width), 0);
+      const first = ends.findIndex((end) => end <= left);
+      const row = first < 0 ? ends.length : first;
+      ends[row] = left + width + NAME.gap;
+      head.style.left = `${left}px`;
+      head.style.top = `${row * NAME.height}px`;
+      this.leads[i].style.left = `${middle}px`;
+      this.leads[i].style.top = `${(row + 1) * NAME.height}px`;
+    });
+    this.names.style.height = `${ends.length * NAME.height}px`;
   }
 
   /** @param {number} i */

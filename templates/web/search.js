@@ -33,8 +33,18 @@ export class Search {
     this.field.select();
   }
 
+  /**
+   * The one that Enter would take, for who hears the page.
+   * @param {string | undefined} id
+   */
+  active(id) {
+    if (id) this.field.setAttribute("aria-activedescendant", id);
+    else this.field.removeAttribute("aria-activedescendant");
+  }
+
   close() {
     this.list.hidden = true;
+    this.active(undefined);
     this.field.setAttribute("aria-expanded", "false");
   }
 
@@ -50,6 +60,7 @@ export class Search {
       e.preventDefault();
       const next = items[(at + (e.key === "ArrowDown" ? 1 : items.length - 1)) % items.length];
       items.forEach((i) => i.setAttribute("aria-selected", String(i === next)));
+      this.active(next?.id);
       next?.scrollIntoView({ block: "nearest" });
     }
     if (e.key === "Enter" && this.found?.length) {
@@ -63,7 +74,7 @@ export class Search {
     this.found = word ? this.search(word) : [];
     this.list.replaceChildren(
       ...this.found.map((f, i) => {
-        const item = el("li", { role: "option", "aria-selected": String(i === 0) },
+        const item = el("li", { id: `found-${i}`, role: "option", "aria-selected": String(i === 0) },
           el("span", { class: `kind ${f.kind}`, text: f.kind }), el("b", { text: shorten(f.text, 60) }), el("span", { text: shorten(f.more, 70) }));
         item.onpointerdown = () => {
           f.go();
@@ -74,6 +85,7 @@ export class Search {
     if (word && !this.found.length) this.list.append(el("li", { class: "note", text: "Nothing has that name or value." }));
     this.list.hidden = !word;
     this.field.setAttribute("aria-expanded", String(Boolean(word)));
+    this.active(this.found.length ? "found-0" : undefined);
   }
 
   /**

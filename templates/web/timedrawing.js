@@ -1,13 +1,15 @@
 // @ts-check
 /** What is seen of the time axis: lanes, messages, events, curves; above them what moves with the moment. */
 
-import { LABEL, LEFT, drawChart } from "./charts.js";
+import { LABEL, drawChart, legendWidth } from "./charts.js";
 import { upperBound } from "./course.js";
-import { colour, shorten } from "./dom.js";
+import { colour, fitting, shorten } from "./dom.js";
 
 /** Height of the axis, and between curves (CSS pixels). */
 export const HEAD = 20;
 export const GAP = 8;
+/** Where the axis begins: right of the names, if these leave two thirds of the width to it. */
+const NAMES = { least: 108, most: 260, all: 0.33 };
 
 /** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
 const KINDS = /** @type {Record<string, string>} */ ({
@@ -28,12 +30,25 @@ const LIGHT = new Set(["home", "external"]);
 export function drawStill(view, w, h) {
   view.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs"), pane: colour("pane") };
   const c = cleared(view.canvas, w, h);
+  view.left = nameWidth(view, c, w);
   axis(view, c, w, h);
   view.divide();
   view.lanes.forEach((lane, i) => drawLane(view, c, lane, HEAD + i * view.lane, w));
   messages(view, c);
   view.curves.forEach((/** @type {any} */ chart, /** @type {number} */ i) => drawChart(c, view, chart, HEAD + view.lanes.length * view.lane + GAP + i * (view.curve + GAP), w));
   events(view, c, h);
+}
+
+/**
+ * How much room there is for what stands left of the axis.
+ * @param {Timeline} view
+ * @param {CanvasRenderingContext2D} c
+ * @param {number} w
+ */
+function nameWidth(view, c, w) {
+  const names = view.lanes.map((lane) => c.measureText(lane.name).width);
+  const widest = Math.max(legendWidth(c, view.curves), ...names) + 16;
+  return Math.max(Math.min(widest, NAMES.most, NAMES.all * w), NAMES.least);
 }
 
 /**
@@ -49,7 +64,7 @@ export function drawMoment(view, c, h) {
   view.lanes.forEach((lane, i) => {
     for (const bar of lane.bars) {
       if (bar.start > t || t >= bar.end || bar.kind === "activity") continue;
-      const left = Math.max(view.x(bar.start), LEFT);
+      const left = Math.max(view.x(bar.start), view.left);
       const width = Math.max(view.x(bar.end) - left, 1.5);
       if (bar.end > view.from && bar.start < view.to) c.strokeRect(left, HEAD + i * view.lane + 3.5, width, view.lane - 7);
     }
@@ -69,7 +84,7 @@ export function drawMoment(view, c, h) {
  * @param {number} h
  */
 function axis(view, c, w, h) {
-  const wanted = (view.to - view.from) / Math.max((w - LEFT) / 90, 1);
+  const wanted = (view.to - view.from) / Math.max((w - view.left) / 90, 1);
   const power = 10 ** Math.floor(Math.log10(wanted));
   const found = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
   const step = view.run.clock === "seconds" ? found : Math.max(found, 1); // there is no half of a step
@@ -103,10 +118,10 @@ function drawLane(view, c, lane, y, w) {
   const LANE = view.lane;
   c.fillStyle = view.ink?.text ?? "";
   c.textAlign = "left";
-  c.fillText(shorten(lane.name, 15), 8, y + LANE / 2);
+  c.fillText(fitting(c, lane.name, view.left - 12), 8, y + LANE / 2);
   c.save();
   c.beginPath();
-  c.rect(LEFT, y, w - LEFT, LANE);
+  c.rect(view.left, y, w - view.left, LANE);
   c.clip();
   for (const bar of lane.bars) {
     if (bar.end < view.from || bar.start > view.to) continue;
@@ -119,7 +134,7 @@ function drawLane(view, c, lane, y, w) {
     const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
     if (fits > 2) {
       c.fillStyle = bar.kind === "activity" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
-      c.fillText(shorten(bar.label, fits), Math.max(x, LEFT) + 4, y + LANE / 2);
+      c.fillText(shorten(bar.label, fits), Math.max(x, view.left) + 4, y + LANE / 2);
     }
   }
   ticks(view, c, lane, y);
@@ -234,13 +249,13 @@ function events(view, c, h) {
  */
 function cursor(view, c, h) {
   const x = view.x(view.clock.t);
-  if (x < LEFT - 1) return;
+  if (x < view.left - 1) return;
   c.fillStyle = view.ink?.accent ?? "";
   c.fillRect(x - 1, HEAD - 6, 2, h);
   c.beginPath();
   c.arc(x, HEAD - 6, 5, 0, 7);
   c.fill();
-  if (view.hover && view.hover.x > LEFT) {
+  if (view.hover && view.hover.x > view.left) {
     c.fillStyle = view.ink?.faint ?? "";
     c.fillRect(view.hover.x, HEAD, 1, h);
   }

@@ -1,7 +1,7 @@
 // @ts-check
 /** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
 
-import { LEFT, charts, growCharts, legendHeight } from "./charts.js";
+import { charts, growCharts, legendHeight } from "./charts.js";
 import { upperBound } from "./course.js";
 import { growLanes, lanesOf } from "./lanes.js";
 import { GAP, HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
@@ -46,6 +46,8 @@ export class Timeline {
     this.to = clock.end;
     this.lane = LOWEST_LANE;
     this.curve = LOWEST_CURVE;
+    /** Where the axis begins. */
+    this.left = 0;
     /** @type {{x: number, y: number} | null} where the mouse is */
     this.hover = null;
     /** @type {Record<string, string> | null} colours of the theme */
@@ -101,12 +103,12 @@ export class Timeline {
 
   /** @param {number} t */
   x(t) {
-    return LEFT + ((t - this.from) / (this.to - this.from)) * (this.width() - LEFT - 10);
+    return this.left + ((t - this.from) / (this.to - this.from)) * (this.width() - this.left - 10);
   }
 
   /** @param {number} x */
   time(x) {
-    return this.from + ((x - LEFT) / (this.width() - LEFT - 10)) * (this.to - this.from);
+    return this.from + ((x - this.left) / (this.width() - this.left - 10)) * (this.to - this.from);
   }
 
   width() {
@@ -237,6 +239,7 @@ export class Timeline {
    * @param {number} y
    */
   tip(x, y) {
+    if (x < this.left) return this.lanes[Math.floor((y - HEAD) / this.lane)]?.name ?? "";
     const bar = this.barAt(x, y);
     if (bar) {
       const t = this.run.net.transitions[bar.transition];

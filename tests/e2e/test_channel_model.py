@@ -9,6 +9,7 @@ import pytest
 
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
+from pn2code.channel_model import check
 from pn2code.channel_model.check import CRASHES, Answer, Evidence, Run, exchange, too_large
 from pn2code.channel_model.compose import compose
 from pn2code.channel_model.faults import Fault
@@ -104,6 +105,18 @@ def test_a_broken_protocol_is_found_out(
     run = "\n".join(shown[fault].lines)
     assert ".robcad" in run or "supervisor.status" in run
     assert run.splitlines()[-1].startswith("so ")
+
+
+@pytest.mark.cc
+def test_the_run_to_a_fault_is_kept_whatever_else_is_dead(
+    cell: Partition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only so many dead markings have runs; a fault that came after them was said without one."""
+    monkeypatch.setattr(check, "MOST_TRACES", 0)
+    found = ask(cell, ROBOT2, RULES["emptied-late"], CALM)
+    assert (found.answer, found.why) == ("no", "")
+    (shown,) = [e for e in found.evidence if e.fault is Fault.OVERRUN]
+    assert shown.lines[-1].startswith("so ")
 
 
 @pytest.mark.cc

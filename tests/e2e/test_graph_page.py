@@ -69,6 +69,9 @@ def test_a_node_is_found_by_its_number(page: Any) -> None:
     page.keyboard.press("Enter")
     page.wait_for_selector(".sheet[data-node='17']")
     assert middle(page) == pytest.approx(centre(page, 17), abs=1)
+    before = view(page)[2]
+    page.keyboard.press("+")  # the picture has the keys at once
+    assert view(page)[2] == pytest.approx(0.8 * before)
     near = page.eval_on_selector_all("a.near", "all => all.map(a => a.getAttribute('href'))")
     rows = page.eval_on_selector_all(
         "#arcs tbody tr",

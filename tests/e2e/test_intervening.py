@@ -112,6 +112,10 @@ def test_in_the_page_a_person_answers_and_lets_a_device_fail(
             question.wait_for(state="hidden")
             page.get_by_role("tab", name="Intervene").click()
             page.get_by_text("whether the gripper holds the part").wait_for()
+            names = browser.ask(
+                "() => [...document.querySelectorAll('.intervene button')].map((b) => b.ariaLabel)"
+            )
+            assert len(set(names)) == len(names) > 8, "each button has a name of its own"
             browser.ask("() => live.page.frame.dark()")
             assert complaints(browser) == []
             page.get_by_role("button", name="Hold: belt").click()

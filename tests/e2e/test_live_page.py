@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from helpers.browser import launched, opened
+from helpers.legible import complaints
 from helpers.lively import HOSTILE, endless, hostile, running
 
 LINES = """(selector) => {
@@ -54,6 +55,10 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
         page.get_by_role("tab", name="State", exact=True).click()
         lines = [browser.ask(LINES, words) for words in ("#live", ".state .sides th")]
         assert lines == [1, 1]
+        ends = browser.ask(
+            "() => [...document.querySelectorAll('#top > *')].map((n) => n.getBoundingClientRect().right)"
+        )
+        assert max(ends) <= 340, "nothing of the head is cut off"
         page.set_viewport_size({"width": 1280, "height": 720})
         # Back in time, and to what happens now.
         browser.ask("() => live.seek(0.1)")
@@ -75,6 +80,8 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
             page.get_by_label("Token").fill(token)
             page.get_by_role("button", name="Stop the cell").click()
             page.get_by_text(said).wait_for()
+            browser.ask("() => (document.documentElement.dataset.theme = 'dark')")
+            assert [c for c in complaints(browser) if "said" in c] == []
         page.locator("#verdict").get_by_text("stopped").wait_for()
         assert (
             page.get_by_role("list", name="Alarms").get_by_text("stopped by the live page").count()

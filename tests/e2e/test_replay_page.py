@@ -6,6 +6,7 @@ import json
 import random
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -330,6 +331,13 @@ class TestRivetingCell:
 
     def test_search_finds_transitions_places_and_values(self, browser: Page) -> None:
         field = browser.page.get_by_role("combobox", name="Find a transition")
+        field.fill("robot")
+        # What Enter would take is told to who hears the page.
+        for key, at in (("ArrowDown", 1), ("ArrowUp", 0)):
+            field.press(key)
+            chosen = browser.page.locator("#found [aria-selected=true]")
+            assert chosen.get_attribute("id") == field.get_attribute("aria-activedescendant")
+            assert chosen.get_attribute("id") == f"found-{at}"
         for word, kind in (
             ("moveLinear", "transition"),
             ("dadosrobo1", "place"),
@@ -480,7 +488,7 @@ def test_a_gap_is_shown_as_long_as_it_is_there(tmp_path: Path, chromium: Any) ->
 def test_what_messages_say_is_seen_beside_many_programs(
     tmp_path: Path, chromium: Any, size: tuple[int, int]
 ) -> None:
-    """The columns of the programs are as narrow as they must be, and an arrow ends below the name of its program."""
+    """Columns are as narrow as they must be; names are whole, and each leads to its column, where arrows begin."""
     shown = with_arm(described(tmp_path, PAIR))
     shown["happenings"]["parties"] += [
         {"name": f"robot number {k}", "kind": "robot"} for k in range(3, 8)
@@ -494,15 +502,24 @@ def test_what_messages_say_is_seen_beside_many_programs(
         if size[0] < size[1]:
             browser.page.get_by_role("button", name="More").click()
         browser.wait("document.querySelector('.panel.messages .said')")
-        room, name, begins = browser.ask("""() => {
+        room, leads, begins, names = browser.ask("""() => {
             const box = (what) => document.querySelector(`.panel.messages ${what}`).getBoundingClientRect();
             const panel = box(".long"), said = box(".said");
-            const last = document.querySelectorAll(".panel.messages .party")[6].getBoundingClientRect();
+            const last = document.querySelectorAll(".panel.messages .lead")[6].getBoundingClientRect();
             const line = box(".message .line");
-            return [panel.right - Math.max(said.left, panel.left), (last.left + last.right) / 2, line.right];
+            const names = [...document.querySelectorAll(".panel.messages .party")].map((name) => {
+              const { left, right, top, bottom } = name.getBoundingClientRect();
+              return { left, right, top, bottom, cut: name.scrollWidth - name.clientWidth };
+            });
+            return [panel.right - Math.max(said.left, panel.left), last.left, line.right, names];
         }""")
         assert room > 120
-        assert abs(begins - name) < 3
+        assert abs(begins - leads) < 3
+        assert len(names) == 7
+        assert all(name["cut"] <= 0 and name["right"] <= size[0] for name in names), names
+        for a, b in combinations(names, 2):
+            is_beside = a["right"] <= b["left"] or b["right"] <= a["left"]
+            assert is_beside or a["bottom"] <= b["top"] + 1 or b["bottom"] <= a["top"] + 1, (a, b)
         assert browser.errors == []
 
 

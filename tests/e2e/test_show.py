@@ -13,7 +13,7 @@ from helpers import netbuilder
 from helpers.shown import PAIR, recorded
 from pn2code.cli import main
 from pn2code.replay import three
-from pn2code.replay import trace as traces
+from pn2code.trace import whole_lines
 
 
 def pn2code(*arguments: object) -> int:
@@ -145,6 +145,8 @@ def test_what_cannot_be_shown_is_said(
     for arguments, why in (
         ((trace,), "no net is named"),
         ((tmp_path / "missing.jsonl", net), "cannot read"),
+        ((tmp_path / "missing",), "cannot read"),
+        ((tmp_path / "text.jsonl",), "neither the folder of a run nor a trace"),
         ((tmp_path / "text.jsonl", net), "neither the folder of a run nor a trace"),
         ((tmp_path / "empty",), "`pn2code run` writes it"),
         ((trace, net, "-o", tmp_path), "cannot write"),
@@ -166,7 +168,7 @@ def test_a_line_without_an_end_is_not_read(
     trace: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a gigabyte in one line nothing is kept, and nothing of it is told but its beginning."""
-    monkeypatch.setattr(traces, "LONGEST_LINE", 20_000)
+    monkeypatch.setattr(whole_lines, "LONGEST", 20_000)
     lines = trace.read_text().splitlines()
     long = lines[1].replace('"transition": "', '"transition": "' + "x" * 30_000)
     page = trace.with_suffix(".html")
@@ -174,7 +176,12 @@ def test_a_line_without_an_end_is_not_read(
         trace.write_text(text)
         assert pn2code("show", trace, trace.with_name("net.cpn"), "-o", page) == 1
         told = capsys.readouterr().err
-        assert "is shown to step 0" in told and len(told) < most
+        assert "is shown to step 0" in told and len(told) < most and "(: " not in told
+        for engine, code in (("reference", 1), ("compiled", 2)):
+            arguments = ("replay", trace, trace.with_name("net.cpn"), "--engine", engine)
+            assert pn2code(*arguments) == code
+            told = "".join(capsys.readouterr())
+            assert "cannot be repeated" in told and "JSON" in told and len(told) < most
 
 
 @pytest.mark.parametrize("moment", ["1e999", "NaN", "-1e999", "true", "1" + "0" * 400])

@@ -56,3 +56,15 @@ def test_what_nobody_has_drawn_is_not_said_to_be_dead(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert "Dead transitions" in done.output and "Supervisor'Again_limit" in done.output
     assert "never occur in the cell" not in done.output
+
+
+def test_scripts_name_what_was_made_for_a_register(tmp_path: Path) -> None:
+    """It has no id in the file of the net that one could look for."""
+    cell = register_pairs.write(tmp_path / "cell", register_pairs.TOLD)
+    done = CliRunner().invoke(app, ["generate", str(cell), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    scripts = "".join(f.read_text() for f in sorted((tmp_path / "out").glob("*.tdl")))
+    assert "(register-" not in scripts
+    words = " ".join(scripts.replace("\n--  ", "").split())
+    assert "place limit_new (made for place limit)" in words
+    assert "-- See limit in" in words and "(made for place limit): " in words

@@ -404,7 +404,9 @@ def _explored(
             run.options,
             traces=Path(folder),
             sizes=sizes,
-            questions=choices + (_question(net) if judged else ""),
+            questions=choices
+            + (_question(net) if judged else _TO_THE_END)
+            + f"? bound {net.verdict} 0 0\n",
             evidence=Path(folder),
         )
         found = explore(net.net, storage, mine, run.d, options)
@@ -433,6 +435,10 @@ def _explored(
     )
 
 
+_TO_THE_END = "true\n? initially 0\n"
+"""A question without which the first fault would answer all of them, and end the exploration."""
+
+
 def _question(net: ChannelModel) -> str:
     """Whether an end, or a verdict, can be reached from everywhere: AG EF."""
     lines = ["dead", *(f"enabled {t}" for t in net.ends)]
@@ -450,14 +456,17 @@ def _evidence(
     """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
     teller = RunText(net, storage)
     seen: set[Fault | None] = set() if judged else {None}
-    for trace in sorted(found.traces, key=lambda t: t.steps):
-        lines, fault = teller.told(trace.file)
+    of_ends, of_faults = found.answers[:-1], found.answers[-1:]
+    kept = [(trace.steps, trace.file) for trace in found.traces]
+    # Other dead markings may have had all the room.
+    kept += [(a["steps"], Path(a["trace"])) for a in of_faults if a["trace"]]
+    for steps, trace in sorted(kept, key=lambda run: run[0]):
+        lines, fault = teller.told(trace)
         if fault not in seen:
             seen.add(fault)
-            yield Evidence(fault, trace.steps, lines)
-    for answer in (
-        found.answers
-    ):  # nothing is asked of a cell without final places: it is made to go on for ever
+            yield Evidence(fault, steps, lines)
+    # Nothing is asked of the ends of a cell without final places: it is made to go on for ever.
+    for answer in of_ends:
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -485,6 +494,6 @@ def _verdict(
         return "no", _STUCK
     if not found.complete:
         return "inconclusive", _incomplete(found.why)
-    if judged and any(a["answer"] != "yes" for a in found.answers):
+    if judged and any(a["answer"] != "yes" for a in found.answers[:-1]):
         return "no", _STUCK
     return "yes", ""

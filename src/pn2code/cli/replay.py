@@ -34,6 +34,7 @@ from pn2code.trace.json_text import BadJson, parse_json
 from pn2code.trace.recording import NotARecording, Recording, recording
 from pn2code.trace.replay_end import UNTIL
 from pn2code.trace.replay_recording import follow
+from pn2code.trace.whole_lines import whole_lines
 from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:
@@ -115,7 +116,7 @@ def kind(trace: Path) -> Recording | None:
     """The recording that a file is; None for a trace of our own; leaves when it is neither."""
     try:
         with trace.open(encoding="utf-8") as lines:
-            first = next((line for line in lines if line.strip()), "")
+            first = next((line for line in whole_lines(lines) if line.strip()), "")
             if _is_header(first):
                 return None
             if trace.stat().st_size > LARGEST:

@@ -18,6 +18,7 @@ from pn2code.trace.json_text import BadJson, parse_json
 from pn2code.trace.lines import digest_problem, form_problem, is_by_hand
 from pn2code.trace.replay_end import Ending, end_problem
 from pn2code.trace.script import TraceRefusedError
+from pn2code.trace.whole_lines import whole_lines
 from pn2code.verdict.opened import OpenNet, as_traced
 
 
@@ -51,8 +52,8 @@ def _checked(trace: Path) -> int:
     """
     is_first = True
     by_hand = 0
-    with trace.open(encoding="utf-8", errors="surrogateescape") as lines:
-        for number, text in enumerate(lines, 1):
+    with trace.open(encoding="utf-8", errors="surrogateescape") as file:
+        for number, text in enumerate(whole_lines(file), 1):
             if not text.strip():
                 continue
             try:

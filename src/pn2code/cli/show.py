@@ -134,7 +134,7 @@ def _is_possible(shown: Json, word: str) -> bool:
         return True
     typer.echo(
         f"pn2code: the {word} is shown to step {refused['step'] - 1}: the next is not possible in this net "
-        f"({refused['transition']}: {refused['why']})",
+        f"({': '.join(filter(None, (refused['transition'], refused['why'])))})",
         err=True,
     )
     return False
@@ -208,9 +208,10 @@ def _trace(
     from pn2code.semantics.evaluation.constants import compute
     from pn2code.semantics.evaluation.files import Files
 
-    if net is None:
+    is_trace = _is_trace(trace, form)
+    if is_trace and net is None:
         _refuse(f"`{trace}` is a trace, but no net is named", "pn2code show TRACE NET", form)
-    if not _is_trace(trace, form):
+    if net is None or not is_trace:
         _refuse(
             f"`{trace}` is neither the folder of a run nor a trace: its first line is not the head of one",
             "traces come from `run`, `simulate --trace` and `verify`",

@@ -120,6 +120,13 @@ PORT_IDLE = register(
     "No transition of the page puts tokens into the port place or takes any from it. CPN Tools accepts that without a "
     "word; mostly an arc was forgotten, or leads to another place of a similar name.",
 )
+PLACE_IDLE = register(
+    "place-idle",
+    "a place has no arc",
+    "No transition puts tokens into the place, takes any from it or looks at it, nor does any with a place that is the "
+    "same by a port or a fusion set. CPN Tools accepts that without a word; mostly an arc was forgotten, or leads to "
+    "another place of a similar name.",
+)
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
     "a kind of declaration is not supported",

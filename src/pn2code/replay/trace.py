@@ -9,7 +9,7 @@ import json
 import math
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from pn2code.net.flat import FlatNet
 from pn2code.reading.document import Document
@@ -23,10 +23,9 @@ from pn2code.trace.lines import is_number
 from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
+from pn2code.trace.whole_lines import whole_lines
 
 MOST_STEPS = 1_000_000
-LONGEST_LINE = 50_000_000
-"""A longer line of a trace (characters) is not read: it is no line of one."""
 MOST_TOLD = 4_000
 """So many characters are told of what is wrong with a trace."""
 _TOLD_STEPS = 500
@@ -67,7 +66,7 @@ def describe(
         OSError: it cannot be read.
     """
     with trace.open(encoding="utf-8", errors="replace") as lines:
-        reader = _Lines(_whole(lines), most, max(trace.stat().st_size, 1), progress)
+        reader = _Lines(whole_lines(lines), most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
         course, refused, game = _followed(
@@ -154,15 +153,6 @@ def _refusal(result: ReplayResult) -> Json | None:
 
 def _cut(text: str) -> str:
     return text if len(text) <= MOST_TOLD else f"{text[:MOST_TOLD]}..."
-
-
-def _whole(file: TextIO) -> Iterator[str]:
-    """The lines of a file; one that is too long is the last, and only its beginning is read, which is no line."""
-    while text := file.readline(LONGEST_LINE):
-        if len(text) == LONGEST_LINE:
-            yield f"{text[:MOST_TOLD]}\n"
-            return
-        yield text
 
 
 def _word(end: Json) -> str:

@@ -5,7 +5,7 @@ a := b, b := a      ->      a_before := a, a := b, b := a_before
 
 from __future__ import annotations
 
-from pn2code.robot_scripts.ir import Element, Line, Node
+from pn2code.robot_scripts.ir import Element, Line, Node, titled
 from pn2code.robot_scripts.machine import Step
 from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.values import ScalarShape
@@ -36,7 +36,7 @@ def one_after_the_other(
                 transition.name,
                 "transition",
                 transition.origin,
-                f"transition {transition.short} ({transition.id})",
+                f"transition {titled(transition)}",
             )
             (aside,) = names.shared(
                 [f"{name}_before"], ScalarShape(kind.type, kind.single), element

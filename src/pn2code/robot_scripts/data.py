@@ -19,7 +19,7 @@ from pn2code.ml.core.colsets import Colset
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import names as robot_names
 from pn2code.robot_scripts.evaluate import Evaluator
-from pn2code.robot_scripts.ir import Element, place_element
+from pn2code.robot_scripts.ir import Element, place_element, titled
 from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
 from pn2code.robot_scripts.names import Names, identifier, small_identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
@@ -218,9 +218,7 @@ class Data:
                 stems = robot_names.of_pattern(term.pattern, shape)
                 if stems is None or _names(term.pattern) & bound:
                     stems = robot_names.of_stem(identifier(self.machine.channels[p].name), shape)
-                element = Element(
-                    flat.name, "channel", flat.origins[0], f"message {flat.short} ({flat.id})"
-                )
+                element = Element(flat.name, "channel", flat.origins[0], f"message {titled(flat)}")
                 names = self.names.shared(stems, shape, element, avoid)
                 avoid |= set(names)
                 self.message_names[p] = names

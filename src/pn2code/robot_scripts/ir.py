@@ -150,9 +150,17 @@ def program(ir: RobotIR) -> t.Program:
 
 def place_element(p: FlatPlace, kind: str = "place") -> Element:
     """What a place is called in comments; `kind`: "place" or "channel"."""
-    return Element(p.name, kind, p.origins[0], f"place {p.short} ({p.id})")
+    return Element(p.name, kind, p.origins[0], f"place {titled(p)}")
+
+
+def titled(x: FlatPlace | FlatTransition) -> str:
+    """A place or transition in words: its name, and its id in the file, or what it was made for if it is not there."""
+    origin = x.origins[0] if isinstance(x, FlatPlace) else x.origin
+    if origin.element_id in ("", x.id):
+        return f"{x.short} ({x.id})"
+    return f"{x.short} (made for {origin.element.replace('`', '')})"
 
 
 def transition_element(x: FlatTransition) -> Element:
     """What a transition is called in comments."""
-    return Element(x.name, "transition", x.origin, f"{x.short} ({x.id})")
+    return Element(x.name, "transition", x.origin, titled(x))

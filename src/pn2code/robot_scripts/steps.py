@@ -32,7 +32,7 @@ from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.illegal_tokens import stops
-from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
+from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node, titled
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
@@ -240,7 +240,7 @@ class StepTranslator:
             transition.name,
             "transition",
             transition.origin,
-            f"transition {transition.short} ({transition.id})",
+            f"transition {titled(transition)}",
         )
         (name,) = self.names.shared([identifier(symbol.name)], shape, element, avoid)
         return sensor, name, shape
@@ -338,7 +338,7 @@ class StepTranslator:
                 transition.name,
                 "transition",
                 transition.origin,
-                f"transition {transition.short} ({transition.id})",
+                f"transition {titled(transition)}",
             )
             (target,) = self.names.shared(
                 [output], ScalarShape(tdl.Type.POSE), element, self._taken
@@ -618,6 +618,4 @@ def header(step: Step, machine: Machine) -> Comment:
     source = next(p for p, *_ in step.takes if p in machine.control)
     targets = dict.fromkeys(places[machine.target(o)].short for o in step.outcomes)
     transition = step.transition
-    return Comment(
-        f"{transition.short} ({transition.id}): {places[source].short} -> {' or '.join(targets)}"
-    )
+    return Comment(f"{titled(transition)}: {places[source].short} -> {' or '.join(targets)}")

@@ -57,6 +57,7 @@ from pn2code.trace.markings import ALL, Markings, claimed_loop
 from pn2code.trace.parties import SIMULATORS, Parties
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
+from pn2code.trace.whole_lines import whole_lines
 
 DEFAULT_SEED = 1
 """Of the random numbers of a run whose header does not name another."""
@@ -192,8 +193,9 @@ def replay(
         files: what the net can do with files; nothing by default.
         progress: is called now and then with how many lines have been read, and which share of the file.
     """
-    with path.open(encoding="utf-8", errors="replace") as lines:
+    with path.open(encoding="utf-8", errors="replace") as file:
         size = path.stat().st_size
+        lines = whole_lines(file)
         return replay_lines(
             lines if progress is None else _told(lines, size, progress),
             net,

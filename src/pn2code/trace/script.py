@@ -19,6 +19,7 @@ from pn2code.semantics.values.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.values.data import Value
 from pn2code.trace.lines import is_number, order_problem, origin_problem, unknown_variable
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
+from pn2code.trace.whole_lines import whole_lines
 from pn2code.trace.writing import json_text
 
 
@@ -43,7 +44,7 @@ def _refuse(problem: str | None, line: int) -> None:
 
 def _lines(path: Path) -> Iterator[str]:
     with path.open(encoding="utf-8", errors="surrogateescape") as file:
-        yield from file
+        yield from whole_lines(file)
 
 
 def _objects(lines: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:

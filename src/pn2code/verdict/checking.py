@@ -18,7 +18,7 @@ from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.input_files import begin
-from pn2code.net import emptiness, free_variables, front
+from pn2code.net import emptiness, free_variables, front, idle_places
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.effects import Effects, outside
@@ -89,11 +89,13 @@ def check(
             channels = rows(partition, config)
             own = {i for i, owner in enumerate(partition.transition_owner) if owner == 0}
             free_variables.remark(partition.net, d, own)
+            idle_places.remark(partition.net, d, is_cell=True)
         if partition is not None and not d.has_errors:
             _unneeded(config, d)
     else:
         if result.flat is not None:
             free_variables.remark(result.flat, d)
+            idle_places.remark(result.flat, d, is_cell=False)
         _properties(file, None, result, d)
         if inputs is not None and result.flat is not None:
             begin(result.flat, None, d, given=inputs)

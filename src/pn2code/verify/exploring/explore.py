@@ -39,8 +39,15 @@ from pn2code.verify.exploring.grace import Grace
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction, default_memory
 from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
-from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
+from pn2code.verify.exploring.reductions import (
+    MOST_WITH_TIMES,
+    OF_ELEMENTS,
+    Chosen,
+    possible,
+    refuse,
+)
 from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 from pn2code.verify.exploring.turns import Turns
 
 Progress = Callable[[Mapping[str, Any]], None]
@@ -162,8 +169,9 @@ def explore(
     options = options or ExploreOptions()
     bounds = options.sizes.bounds if options.sizes is not None else None
     open_places = None
+    time_alone = _may_go_on(net, limits, options.predicates)
+    limits = _with_an_end(net, limits, options.predicates)
     is_limited = limits.max_states is not None
-    time_alone = _may_go_on(net, limits)
     if bounds is not None:
         open_places = [p.index for p in net.places if p.index not in bounds]
         if not open_places and not time_alone:
@@ -184,15 +192,33 @@ def explore(
     return replace(found, why=INFINITE, covering=run)
 
 
-def _may_go_on(net: FlatNet, limits: Limits) -> bool:
+def _may_go_on(net: FlatNet, limits: Limits, predicates: Sequence[Predicate]) -> bool:
     """Whether nothing would end the exploration of a net whose time goes on for ever: no limit, and no reduction."""
-    is_limited = (
+    if not net.timed or _is_limited(limits):
+        return False
+    return Reduction.TIME not in limits.reductions or _keeps_times(net, predicates)
+
+
+def _with_an_end(net: FlatNet, limits: Limits, predicates: Sequence[Predicate]) -> Limits:
+    """The limits, with one of markings where times were to be left out, cannot be, and nothing else is an end."""
+    is_wanted = net.timed and Reduction.TIME in limits.reductions
+    if not is_wanted or _is_limited(limits) or not _keeps_times(net, predicates):
+        return limits
+    return replace(limits, max_states=MOST_WITH_TIMES)
+
+
+def _is_limited(limits: Limits) -> bool:
+    return (
         limits.max_states is not None
         or limits.memory is not None
         or limits.processor_seconds is not None
         or limits.deadline.seconds is not None
     )
-    return net.timed and not is_limited and Reduction.TIME not in limits.reductions
+
+
+def _keeps_times(net: FlatNet, predicates: Sequence[Predicate]) -> bool:
+    """Whether the reduction by time is refused."""
+    return why_not_reducible(net, predicates) is not None
 
 
 def _explored(

@@ -21,6 +21,13 @@ WHY_NOT_REDUCIBLE: dict[Reduction, Callable[..., NotReducible | None]] = {
 """What looks for the first thing in a net that is in the way of a reduction."""
 OF_ELEMENTS = (Reduction.PARTIAL_ORDER, Reduction.SYMMETRY)
 """Reductions that rest on the table of binding elements."""
+MOST_WITH_TIMES = 3_000_000
+"""Markings that are looked at where the reduction by time is refused, and no limit is set. Each has its time then, so
+a net that goes on has no end of them."""
+_WITH_TIMES = (
+    "the net is explored without it, so each marking has its time, and there may be no end of them: unless "
+    f"`--max-states`, `--max-seconds` or `--memory` says otherwise, the exploration ends after {MOST_WITH_TIMES:,}"
+)
 
 
 @frozen
@@ -110,7 +117,7 @@ def refuse(reduction: Reduction, why: str, at: Origin | Span, d: Diagnostics) ->
         REDUCTION_NOT_POSSIBLE,
         f"the reduction `{reduction.value}` is not possible: {why}",
         at,
-        hint="the net is explored without it",
+        hint=_WITH_TIMES if reduction is Reduction.TIME else "the net is explored without it",
     )
 
 
