@@ -22,7 +22,7 @@ from pn2code.base.late import Late
 from pn2code.contest import certificates, conditions
 from pn2code.contest.conditions import Condition, junction
 from pn2code.contest.engine import Answer, Said
-from pn2code.contest.equation import StateEquation, wait_for_solver
+from pn2code.contest.equation import StateEquation
 from pn2code.contest.tables import Tables
 
 if TYPE_CHECKING:
@@ -74,10 +74,9 @@ class Home(threading.Thread):
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
 
-    def end(self, patience: float) -> None:
-        """Stop at the next step."""
+    def end(self) -> None:
+        """Stop at the next step; a linear program may still be solved (`wait_for_solver`)."""
         self.is_over.set()
-        wait_for_solver(patience)
 
 
 def is_home(tables: Tables, until: float, is_over: threading.Event | None = None) -> bool:
