@@ -57,15 +57,20 @@ def orders(
     if places == 0:
         return [[]]
     first = np.arange(places, dtype=np.int64) if written is None else np.array(written, np.int64)
-    touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
-    touched = [t for t in touched if len(t) > 1]
-    even = _sorted(_Spans(places, touched), first)
-    narrow = _sorted(_Spans(places, touched, is_narrow=True), first)
+    connected = touched(pre, post)
+    even = _sorted(Spans(places, connected), first)
+    narrow = _sorted(Spans(places, connected, is_narrow=True), first)
     found = [narrow[0], even[0], first, first[::-1].copy(), *narrow[1:2], *even[1:]]
     return [order.tolist() for order in {order.tobytes(): order for order in found}.values()]
 
 
-def _sorted(net: _Spans, first: Order) -> list[Order]:
+def touched(pre: Arcs, post: Arcs) -> list[list[int]]:
+    """The places of each transition that has two or more."""
+    found = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
+    return [t for t in found if len(t) > 1]
+
+
+def _sorted(net: Spans, first: Order) -> list[Order]:
     """The different orders that are made, by their cost."""
     found: dict[bytes, Order] = {}
     for order in _made(net, first):
@@ -74,7 +79,7 @@ def _sorted(net: _Spans, first: Order) -> list[Order]:
     return sorted(found.values(), key=net.cost)
 
 
-def _made(net: _Spans, first: Order) -> Iterator[Order]:
+def _made(net: Spans, first: Order) -> Iterator[Order]:
     near = net.neighbours()
     starts = [
         first,
@@ -97,7 +102,7 @@ def _breadth_first(near: sparse.csr_array) -> Order:
     return np.concatenate(parts).astype(np.int64)
 
 
-class _Spans:
+class Spans:
     """The places of all transitions, one after the other.
 
     Args:
