@@ -37,9 +37,11 @@ _AGAIN = 1.5
 _GLANCE = 0.04
 """Of the time, for each order of a lane that counts; then the first few have more, and the first one what is left."""
 _LONGER = (0.12, 0.12, 0.12)
+_SEARCHES = 3
+"""So often the first order of a lane is made better, and tried, in what is left of the time."""
 _IMPROVING = 0.3
-_IMPROVING_S = 20.0
-"""Of what is left, and at most, for making the first order of a lane better before it has the rest."""
+_IMPROVING_S = 8.0
+"""Of that time, and at most so much of a processor, for making it better."""
 _MAKING = 0.2
 """Of the time, to make the net smaller before its markings are counted."""
 
@@ -94,9 +96,9 @@ class Diagrams:
 
         Each order has a glance at first, since most diagrams are whole soon or never; then the most promising ones have
         more, and what is left is for the first one; in the second lane, and in that with units, it is made better
-        before (coupling.py), and has that time upside down as well. Where places were put together as units, the first
-        lane has these, the second one all places by themselves. The net is made smaller, and the orders are made, when
-        the first lane asks for a task, since this takes long for large nets.
+        (coupling.py) again and again, and tried as it is and upside down. Where places were put together as units, the
+        first lane has these, the second one all places by themselves. The net is made smaller, and the orders are made,
+        when the first lane asks for a task, since this takes long for large nets.
         """
         ends = time.monotonic() + seconds
         return [self._lane(which, ends, mebibytes) for which in range(2)]
@@ -114,16 +116,16 @@ class Diagrams:
         seconds = max(0.0, ends - time.monotonic())
         for order, share in turns:
             yield Task("sizes", row.written(order), share * seconds, mebibytes)
-        last = [first]
-        if is_improving:
-            now = time.monotonic()
-            until = now + min(_IMPROVING * max(0.0, ends - now), _IMPROVING_S)
-            net = row.net
-            better = improved(len(net.initial), net.pre, net.post, first, until=until)
-            last = [better, better[::-1]]
-        for i, order in enumerate(last):
-            left = max(0.0, ends - time.monotonic())
-            yield Task("sizes", row.written(order), left / (len(last) - i), mebibytes)
+        if not is_improving:
+            yield Task("sizes", row.written(first), max(0.0, ends - time.monotonic()), mebibytes)
+            return
+        for k in range(_SEARCHES):
+            began = time.monotonic()
+            until = began + max(0.0, ends - began) / (_SEARCHES - k)
+            first = _improved(row.net, first, began + _IMPROVING * (until - began), k)
+            for i, order in enumerate((first, first[::-1])):
+                left = max(0.0, until - time.monotonic()) / (2 - i)
+                yield Task("sizes", row.written(order), left, mebibytes)
 
     def _row(self, which: int, ends: float) -> _Row:
         """What a lane builds, and its orders, the most promising ones first."""
@@ -159,6 +161,12 @@ class _Row:
     orders: list[list[int]]
     net: Tables
     has_units: bool = False
+
+
+def _improved(net: Tables, order: list[int], until: float, seed: int) -> list[int]:
+    """An order of the places of a net, made better for some time."""
+    arcs = net.pre, net.post
+    return improved(len(net.initial), *arcs, order, until=until, processor=_IMPROVING_S, seed=seed)
 
 
 def as_written(tables: Tables) -> list[int]:

@@ -15,6 +15,7 @@ import random
 import sys
 import time
 from collections.abc import Sequence
+from math import inf
 from typing import TYPE_CHECKING
 
 from pn2code.base.late import Late
@@ -45,6 +46,7 @@ def improved(
     start: Sequence[int],
     *,
     until: float,
+    processor: float = inf,
     seed: int = 1,
     moves: int = sys.maxsize,
 ) -> list[int]:
@@ -56,6 +58,7 @@ def improved(
         post: what they put.
         start: the order to begin with, from the top downwards.
         until: when to stop, on the monotonic clock.
+        processor: seconds of it that the thread may use.
         seed: of the moves.
         moves: that are tried at most.
     """
@@ -65,8 +68,9 @@ def improved(
     draw = random.Random(seed)
     order = list(start)
     lowest = net.cost(order)
+    began = time.thread_time()
     for _ in range(moves):
-        if time.monotonic() >= until:
+        if time.monotonic() >= until or time.thread_time() - began >= processor:
             break
         moved = net.moved(order, draw)
         cost = net.cost(moved)
