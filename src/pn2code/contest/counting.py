@@ -24,15 +24,23 @@ import time
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from math import gcd
-
-import numpy as np
-from scipy.sparse import csc_array, csr_array, vstack
-from scipy.sparse.csgraph import connected_components
+from typing import TYPE_CHECKING
 
 from pn2code.base.frozen import frozen
+from pn2code.base.late import Late
 from pn2code.contest.reduction.net import Affine, Goal, Net
 from pn2code.contest.reduction.transitions import dead_transitions
 from pn2code.contest.tables import Tables
+
+if TYPE_CHECKING:
+    import numpy as np
+    from scipy import optimize, sparse
+    from scipy.sparse import csgraph
+else:
+    np = Late("numpy")
+    optimize = Late("scipy.optimize")
+    sparse = Late("scipy.sparse")
+    csgraph = Late("scipy.sparse.csgraph")
 
 MOST_ARCS = 200_000
 """No linear programs about larger nets."""
@@ -322,7 +330,9 @@ class _Counting:
         number = {p: i for i, p in enumerate(places)}
         a, b = ([number[m[k]] for m in moves] for k in range(2))
         ones, shape = np.ones(len(moves)), (len(places), len(places))
-        _, part = connected_components(csr_array((ones, (a, b)), shape=shape), connection="strong")
+        _, part = csgraph.connected_components(
+            sparse.csr_array((ones, (a, b)), shape=shape), connection="strong"
+        )
         first: dict[int, int] = {}
         merged = False
         for p, k in zip(places, part.tolist(), strict=True):
@@ -439,7 +449,7 @@ class _Sums:
         at = [(i, p) for i, row in enumerate(rows) for p in row]
         changes = np.array([n for row in rows for n in row.values()], dtype=float)
         shape = (len(rows), len(places))
-        self.changes = csc_array((changes, tuple(np.array(at).T)), shape=shape)
+        self.changes = sparse.csc_array((changes, tuple(np.array(at).T)), shape=shape)
         self.is_there = np.full(len(places), True)
 
     def without(self, column: int) -> None:
@@ -456,8 +466,6 @@ class _Sums:
             rests: of the transitions that need it: what else they need, and how much of the place.
             marking: the initial one, by column.
         """
-        from scipy.optimize import linprog  # takes long to load
-
         left = self.until - time.monotonic()
         if left <= 0:
             return None
@@ -473,7 +481,7 @@ class _Sums:
                     needs[i, q] -= n
             least = marking[column] - np.array([n for _, n in rests], dtype=float)
         cost = np.ones(len(upper)) if rests else np.zeros(len(upper))
-        found = linprog(
+        found = optimize.linprog(
             cost,
             A_ub=needs,
             b_ub=least,
@@ -540,22 +548,20 @@ class _Invariants:
         at = np.array([(i, p) for i, row in enumerate(changes) for p in row]).reshape(-1, 2)
         numbers = np.array([n for row in changes for n in row.values()], dtype=float)
         shape = (len(changes) + 1, len(initial))
-        marked = csr_array(self.initial.reshape(1, -1))
-        self.equal = vstack(
-            [csr_array((numbers, tuple(at.T)), shape=(shape[0] - 1, shape[1])), marked]
+        marked = sparse.csr_array(self.initial.reshape(1, -1))
+        self.equal = sparse.vstack(
+            [sparse.csr_array((numbers, tuple(at.T)), shape=(shape[0] - 1, shape[1])), marked]
         ).tocsc()
 
     def with_most(self, wanted: set[int]) -> set[int] | None:
         """One with as many of some places as possible; None: there is none, or the time is over."""
-        from scipy.optimize import linprog  # takes long to load
-
         left = self.until - time.monotonic()
         if left <= 0:
             return None
         cost = np.array([-1.0 if p in wanted else 0.0 for p in range(len(self.initial))])
         right = np.zeros(self.equal.shape[0])
         right[-1] = 1.0
-        found = linprog(
+        found = optimize.linprog(
             cost,
             A_eq=self.equal,
             b_eq=right,

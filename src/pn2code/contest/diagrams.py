@@ -17,9 +17,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 
+from pn2code.base.frozen import frozen
 from pn2code.contest.counting import Counted, smaller
 from pn2code.contest.engine import Task
 from pn2code.contest.tables import Tables
+from pn2code.symbolic.coupling import improved
 from pn2code.symbolic.order import orders
 
 METHOD = "diagrams"
@@ -35,6 +37,11 @@ _AGAIN = 1.5
 _GLANCE = 0.04
 """Of the time, for each order of a lane that counts; then the first few have more, and the first one what is left."""
 _LONGER = (0.12, 0.12, 0.12)
+_SEARCHES = 3
+"""So often the first order of a lane is made better, and tried, in what is left of the time."""
+_IMPROVING = 0.3
+_IMPROVING_S = 8.0
+"""Of that time, and at most so much of a processor, for making it better."""
 _MAKING = 0.2
 """Of the time, to make the net smaller before its markings are counted."""
 
@@ -88,42 +95,78 @@ class Diagrams:
         """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
 
         Each order has a glance at first, since most diagrams are whole soon or never; then the most promising ones have
-        more. Where places were put together as units, the first lane has these, the second one all places by
-        themselves. The net is made smaller, and the orders are made, when the first lane asks for a task, since this
-        takes long for large nets.
+        more, and what is left is for the first one; in the second lane, and in that with units, it is made better
+        (coupling.py) again and again, and tried as it is and upside down. Where places were put together as units, the
+        first lane has these, the second one all places by themselves. The net is made smaller, and the orders are made,
+        when the first lane asks for a task, since this takes long for large nets.
         """
         ends = time.monotonic() + seconds
         return [self._lane(which, ends, mebibytes) for which in range(2)]
 
     def _lane(self, which: int, ends: float, mebibytes: int) -> Iterator[Task]:
         with self.lock:
-            written, row = self._row(which, ends)
-        if not row:
+            row = self._row(which, ends)
+        if not row.orders:
             return
-        turns = [*((order, _GLANCE) for order in row), *zip(row, _LONGER, strict=False)]
-        turns = turns if len(row) > 1 else []
-        turns.append((row[0], 1.0 - sum(share for _, share in turns)))
+        first = row.orders[0]
+        is_improving = which == 1 or row.has_units
+        longer = zip(row.orders, _LONGER[: 1 if is_improving else None], strict=False)
+        turns = [*((order, _GLANCE) for order in row.orders), *longer]
+        turns = turns if len(row.orders) > 1 else []
         seconds = max(0.0, ends - time.monotonic())
         for order, share in turns:
-            yield Task("sizes", written(order), share * seconds, mebibytes)
+            yield Task("sizes", row.written(order), share * seconds, mebibytes)
+        if not is_improving:
+            yield Task("sizes", row.written(first), max(0.0, ends - time.monotonic()), mebibytes)
+            return
+        for k in range(_SEARCHES):
+            began = time.monotonic()
+            until = began + max(0.0, ends - began) / (_SEARCHES - k)
+            first = _improved(row.net, first, began + _IMPROVING * (until - began), k)
+            for i, order in enumerate((first, first[::-1])):
+                left = max(0.0, until - time.monotonic()) / (2 - i)
+                yield Task("sizes", row.written(order), left, mebibytes)
 
-    def _row(
-        self, which: int, ends: float
-    ) -> tuple[Callable[[Sequence[int]], str], list[list[int]]]:
-        """How a lane writes the net with an order, and its orders, the most promising ones first."""
+    def _row(self, which: int, ends: float) -> _Row:
+        """What a lane builds, and its orders, the most promising ones first."""
         if not self.is_tried:
             now = time.monotonic()
             self.counted = smaller(self.tables, now + _MAKING * (ends - now))
             self.is_tried = True
         counted = self.counted
         if counted is None:
-            return lambda order: self.tables.text([], order), self.orders[which::2]
+            net = self.tables
+            return _Row(lambda order: net.text([], order), self.orders[which::2], net)
         if counted.units:
             counted = counted if which == 0 else counted.without_units()
-            return counted.text, _orders(counted, as_written(self.tables))
+            found = _orders(counted, as_written(self.tables))
+            return _Row(counted.text, found, counted.drawn, has_units=which == 0)
         if self.counted_orders is None:
             self.counted_orders = _orders(counted, as_written(self.tables))
-        return counted.text, self.counted_orders[which::2]
+        return _Row(counted.text, self.counted_orders[which::2], counted.drawn)
+
+
+@frozen
+class _Row:
+    """What a lane that counts builds.
+
+    Args:
+        written: an order -> the text for the engine.
+        orders: of the places of the net.
+        net: the net of its diagrams.
+        has_units: whether places were put together.
+    """
+
+    written: Callable[[Sequence[int]], str]
+    orders: list[list[int]]
+    net: Tables
+    has_units: bool = False
+
+
+def _improved(net: Tables, order: list[int], until: float, seed: int) -> list[int]:
+    """An order of the places of a net, made better for some time."""
+    arcs = net.pre, net.post
+    return improved(len(net.initial), *arcs, order, until=until, processor=_IMPROVING_S, seed=seed)
 
 
 def as_written(tables: Tables) -> list[int]:

@@ -21,14 +21,21 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.late import Late
 from pn2code.contest import certificates
 from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, junction
 from pn2code.contest.tables import Tables
+
+if TYPE_CHECKING:
+    import numpy as np
+    from scipy import optimize, sparse
+else:
+    np = Late("numpy")
+    optimize = Late("scipy.optimize")
+    sparse = Late("scipy.sparse")
 
 _ZERO = 1e-6
 _SMALL = 1e-9
@@ -112,12 +119,10 @@ class StateEquation:
     @cached_property
     def _matrix(self) -> Any:
         """C: places by transitions."""
-        from scipy.sparse import csr_array
-
         entries = [(p, t, n) for t, e in enumerate(self.effects) for p, n in e.items()]
         p, t, n = zip(*entries, strict=True) if entries else ((), (), ())
         shape = (len(self.tables.initial), len(self.effects))
-        return csr_array((np.array(n, dtype=float), (p, t)), shape=shape)
+        return sparse.csr_array((np.array(n, dtype=float), (p, t)), shape=shape)
 
     @cached_property
     def _initial(self) -> Any:
@@ -251,22 +256,19 @@ class StateEquation:
 
     def _inequalities(self, rows: Sequence[AtMost]) -> tuple[Any, Any]:
         """Of the number of steps of each transition, and of the distance from the rows: tokens are not negative."""
-        from scipy.sparse import csc_array, csr_array, eye_array, hstack, vstack
-
         transitions = len(self.effects)
         entries = [(i, p, n) for i, row in enumerate(rows) for p, n in row.factors]
         i, p, n = zip(*entries, strict=True) if entries else ((), (), ())
         shape = (len(rows), self.places + transitions)
-        a = csr_array((np.array(n, dtype=float), (i, p)), shape=shape)
+        a = sparse.csr_array((np.array(n, dtype=float), (i, p)), shape=shape)
         limits = np.array([row.limit for row in rows], dtype=float) - a @ self._all_initial
         extra = np.concatenate([np.zeros(self.places), -np.ones(len(rows))]).reshape(-1, 1)
-        counted = vstack([self._matrix, eye_array(transitions)])
-        left = hstack([vstack([-self._matrix, a @ counted]), csr_array(extra)])
-        return csc_array(left), np.concatenate([self._initial, limits])
+        counted = sparse.vstack([self._matrix, sparse.eye_array(transitions)])
+        left = sparse.hstack([sparse.vstack([-self._matrix, a @ counted]), sparse.csr_array(extra)])
+        return sparse.csc_array(left), np.concatenate([self._initial, limits])
 
     def _solve(self, cost: Any, left: Any, right: Any, until: float) -> Any:
-        from scipy.optimize import linprog
-
+        linprog = optimize.linprog  # loaded before anybody may have to wait for it
         with _solving:
             seconds = min(LONGEST_S, until - time.monotonic())
             if seconds <= 0.0 or self.is_over.is_set():

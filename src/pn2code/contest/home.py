@@ -15,14 +15,23 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from math import inf
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from pn2code.base.late import Late
 from pn2code.contest import certificates, conditions
 from pn2code.contest.conditions import Condition, junction
 from pn2code.contest.engine import Answer, Said
-from pn2code.contest.equation import StateEquation, wait_for_solver
+from pn2code.contest.equation import StateEquation
 from pn2code.contest.tables import Tables
+
+if TYPE_CHECKING:
+    import numpy as np
+    from scipy import optimize, sparse
+else:
+    np = Late("numpy")
+    optimize = Late("scipy.optimize")
+    sparse = Late("scipy.sparse")
 
 TECHNIQUE = "HOME_MARKING"
 MOST_TRANSITIONS = 10_000
@@ -65,10 +74,9 @@ class Home(threading.Thread):
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
 
-    def end(self, patience: float) -> None:
-        """Stop at the next step."""
+    def end(self) -> None:
+        """Stop at the next step; a linear program may still be solved (`wait_for_solver`)."""
         self.is_over.set()
-        wait_for_solver(patience)
 
 
 def is_home(tables: Tables, until: float, is_over: threading.Event | None = None) -> bool:
@@ -112,7 +120,7 @@ def drain(tables: Tables) -> list[int]:
 
 def _homewards(tables: Tables, effects: Effects) -> list[int]:
     """For each place that is empty at first a transition from which its tokens get into filled ones the soonest."""
-    far = [0.0 if n else np.inf for n in tables.initial]
+    far = [0.0 if n else inf for n in tables.initial]
     best: dict[int, int] = {}
     is_changed = True
     for _ in range(len(far) + 1):
@@ -129,18 +137,18 @@ def _homewards(tables: Tables, effects: Effects) -> list[int]:
 
 def _weights(places: int, effects: Effects, wanted: Sequence[int]) -> list[float]:
     """A weight that becomes smaller with as many of the transitions as can be, nearly."""
-    from scipy.optimize import linprog
-    from scipy.sparse import csr_array, eye_array, hstack
-
     entries = [(i, p, n) for i, t in enumerate(wanted) for p, n in effects[t].items()]
     i, p, n = zip(*entries, strict=True)
     shape = (len(wanted), places)
-    left = hstack(
-        [csr_array((np.array(n, dtype=float), (i, p)), shape=shape), -eye_array(shape[0])]
+    left = sparse.hstack(
+        [
+            sparse.csr_array((np.array(n, dtype=float), (i, p)), shape=shape),
+            -sparse.eye_array(shape[0]),
+        ]
     )
     cost = np.concatenate([np.full(places, _MARKED), np.ones(len(wanted))])
     limits = {"time_limit": _WEIGHTS_S}
-    found = linprog(cost, left, -np.ones(len(wanted)), method="highs", options=limits)
+    found = optimize.linprog(cost, left, -np.ones(len(wanted)), method="highs", options=limits)
     return [] if found.status != 0 else [max(0.0, w) for w in found.x[:places].tolist()]
 
 

@@ -20,6 +20,7 @@ from pn2code.base.frozen import frozen, record
 from pn2code.contest.conditions import TRUE
 from pn2code.contest.diagrams import KINDS, METHOD, TRIED, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
+from pn2code.contest.equation import wait_for_solver
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
 from pn2code.contest.home import Home
@@ -326,13 +327,12 @@ class _Portfolio:
             self.home.start()
 
     def end(self) -> None:
-        """Nothing is to be asked any more."""
-        if self.home is not None:
-            self.home.end(self.grace)
-        if self.structural is not None:
-            self.structural.end(self.grace)
-        if self.play is not None:
-            self.play.end()
+        """Nothing is to be asked any more; when the time is over, nobody waits for a linear program."""
+        left = self.ends + self.grace - time.monotonic()
+        for thread in (self.home, self.structural, self.play):
+            if thread is not None:
+                thread.end()
+        wait_for_solver(max(0.0, min(self.grace, left)))
 
     def at_once(self) -> Iterator[Result]:
         """Without places or transitions nothing has to be asked."""

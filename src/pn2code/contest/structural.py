@@ -19,7 +19,7 @@ from pn2code.base.frozen import record
 from pn2code.contest import conditions
 from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, TooLargeError
 from pn2code.contest.engine import Answer, Said
-from pn2code.contest.equation import LONGEST_WAIT_S, StateEquation, wait_for_solver
+from pn2code.contest.equation import StateEquation
 from pn2code.contest.examinations import Part
 from pn2code.contest.formulas import Formula
 from pn2code.contest.reduction.reduce import Reduced, reduced_for
@@ -185,10 +185,9 @@ class Structural(threading.Thread):
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
 
-    def end(self, patience: float = LONGEST_WAIT_S) -> None:
-        """Stop at the next step; no linear program is being solved afterwards, unless it takes longer than that."""
+    def end(self) -> None:
+        """Stop at the next step; a linear program may still be solved (`wait_for_solver`)."""
         self.is_over.set()
-        wait_for_solver(patience)
 
     def _left(self) -> float:
         left = self.ends - time.monotonic()

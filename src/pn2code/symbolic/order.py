@@ -11,11 +11,21 @@ in which somebody, or a tool that knew of processes, wrote the places down is am
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components, reverse_cuthill_mckee
+from pn2code.base.late import Late
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from scipy import sparse
+    from scipy.sparse import csgraph
+
+    Order = NDArray[np.int64]
+else:
+    np = Late("numpy")
+    sparse = Late("scipy.sparse")
+    csgraph = Late("scipy.sparse.csgraph")
 
 _PASSES = 200
 _PATIENCE = 10
@@ -27,7 +37,6 @@ _WIDE = 200
 _NARROW = 8
 """The same where wide transitions count for little."""
 
-Order = NDArray[np.int64]
 Arcs = Sequence[Mapping[int, int]]
 
 
@@ -48,15 +57,20 @@ def orders(
     if places == 0:
         return [[]]
     first = np.arange(places, dtype=np.int64) if written is None else np.array(written, np.int64)
-    touched = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
-    touched = [t for t in touched if len(t) > 1]
-    even = _sorted(_Spans(places, touched), first)
-    narrow = _sorted(_Spans(places, touched, is_narrow=True), first)
+    connected = touched(pre, post)
+    even = _sorted(Spans(places, connected), first)
+    narrow = _sorted(Spans(places, connected, is_narrow=True), first)
     found = [narrow[0], even[0], first, first[::-1].copy(), *narrow[1:2], *even[1:]]
     return [order.tolist() for order in {order.tobytes(): order for order in found}.values()]
 
 
-def _sorted(net: _Spans, first: Order) -> list[Order]:
+def touched(pre: Arcs, post: Arcs) -> list[list[int]]:
+    """The places of each transition that has two or more."""
+    found = [sorted({*a, *b}) for a, b in zip(pre, post, strict=True)]
+    return [t for t in found if len(t) > 1]
+
+
+def _sorted(net: Spans, first: Order) -> list[Order]:
     """The different orders that are made, by their cost."""
     found: dict[bytes, Order] = {}
     for order in _made(net, first):
@@ -65,11 +79,11 @@ def _sorted(net: _Spans, first: Order) -> list[Order]:
     return sorted(found.values(), key=net.cost)
 
 
-def _made(net: _Spans, first: Order) -> Iterator[Order]:
+def _made(net: Spans, first: Order) -> Iterator[Order]:
     near = net.neighbours()
     starts = [
         first,
-        reverse_cuthill_mckee(near, symmetric_mode=True).astype(np.int64),
+        csgraph.reverse_cuthill_mckee(near, symmetric_mode=True).astype(np.int64),
         _breadth_first(near),
     ]
     for start in starts:
@@ -77,15 +91,18 @@ def _made(net: _Spans, first: Order) -> Iterator[Order]:
         yield net.forced(start)
 
 
-def _breadth_first(near: csr_array) -> Order:
+def _breadth_first(near: sparse.csr_array) -> Order:
     """Places in the order in which they are reached, one connected part after the other."""
-    _, part = connected_components(near, directed=False)
+    _, part = csgraph.connected_components(near, directed=False)
     _, roots = np.unique(part, return_index=True)
-    parts = [breadth_first_order(near, r, directed=False, return_predecessors=False) for r in roots]
+    parts = [
+        csgraph.breadth_first_order(near, r, directed=False, return_predecessors=False)
+        for r in roots
+    ]
     return np.concatenate(parts).astype(np.int64)
 
 
-class _Spans:
+class Spans:
     """The places of all transitions, one after the other.
 
     Args:
@@ -105,7 +122,7 @@ class _Spans:
         self.widest = _NARROW if is_narrow else _WIDE
         self.uses = np.bincount(self.place, np.repeat(self.weight, self.sizes), places)
 
-    def neighbours(self) -> csr_array:
+    def neighbours(self) -> sparse.csr_array:
         """Which places have a transition in common."""
         of = np.repeat(np.arange(len(self.sizes)), self.sizes)  # arc -> its transition
         first = self.place[self.first[of]]
@@ -119,7 +136,9 @@ class _Spans:
         b = np.concatenate((self.place[next_], self.place[also]))
         ones = np.ones(2 * len(a), dtype=np.int32)
         shape = (self.places, self.places)
-        return csr_array((ones, (np.concatenate((a, b)), np.concatenate((b, a)))), shape=shape)
+        return sparse.csr_array(
+            (ones, (np.concatenate((a, b)), np.concatenate((b, a)))), shape=shape
+        )
 
     def cost(self, order: Order) -> float:
         """The levels that transitions reach over, those further up counted more."""

@@ -10,9 +10,11 @@ from queue import SimpleQueue
 
 import pytest
 
-from pn2code.contest import diagrams
+from pn2code.contest import diagrams, equation
 from pn2code.contest.engine import Said, Task, ask
-from pn2code.contest.portfolio import space
+from pn2code.contest.examinations import Asked, Part
+from pn2code.contest.formulas import AtMost, Constant, Op, Tokens
+from pn2code.contest.portfolio import answers, space
 from pn2code.contest.tables import Tables
 
 
@@ -49,3 +51,39 @@ def test_a_state_space_does_not_wait_for_orders_of_diagrams(
     tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
     assert space(Path("engine"), tables, seconds=0.0, mebibytes=16, only="diagrams") is None
     go_on.set()
+
+
+class _Solver:
+    """A solver that is never done: who waits for it waits as long as it would."""
+
+    def __init__(self) -> None:
+        self.waited: list[float] = []
+        self.lock = threading.Lock()
+
+    def acquire(self, timeout: float) -> bool:
+        self.waited.append(timeout)
+        return False
+
+    def __enter__(self) -> None:
+        self.lock.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self.lock.release()
+
+
+def test_linear_programs_are_waited_for_once_and_only_while_there_is_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """However many threads solve some."""
+    solver = _Solver()
+    monkeypatch.setattr(equation, "_solving", solver)
+    tables = Tables((1, 0), ({0: 1}, {1: 1}), ({1: 1}, {0: 1}), {"p": (0,)}, {"t": (0,)})
+    often = Op("A", (Op("G", (Op("E", (Op("X", (AtMost(Tokens(("p",)), Constant(0)),)),)),)),))
+    asked = [
+        Asked("f", (), None, value=True, formula=often, kind="ctl"),
+        Asked("g", (Part("reach", "reach dead"),), None, value=True),
+    ]
+    seconds = 0.15  # too little for the engine
+    list(answers(Path("engine"), tables, asked, seconds=seconds))
+    assert sum(solver.waited) <= 0.05 * seconds
+    assert len(solver.waited) == 1
