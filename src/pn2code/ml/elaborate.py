@@ -569,6 +569,19 @@ class Elaborator:
         key = (text.text, text.origin.part, tuple(types), expected_name, output)
         return self._once(key, text, work)
 
+    def fits(self, text: SourceText, t: Type, expected_name: str) -> bool:
+        """Whether an initial marking that is well-typed could have this type as well: `empty` fits any multi-set."""
+        exp = self._parse(text)
+        quiet, self._ctx.d = self._ctx.d, Diagnostics()
+        errors = self._ctx.errors
+        try:
+            return exp is not None and (
+                self._inscriptions.expression(text, exp, [t], expected_name, {}) is not None
+            )
+        finally:
+            self._ctx.d = quiet
+            self._ctx.errors = errors
+
     def layered(self, text: SourceText, t: Type) -> tuple[core.Exp, core.Pat, core.Exp] | None:
         """`x as pattern` on an input arc: the token x, the pattern that binds, and the condition that x matches it.
 
@@ -691,6 +704,12 @@ class Elaborator:
     def tokens(self, exp: core.Exp, is_token: bool) -> Counter[Any] | None:
         """The tokens of an initial marking, which is one of them or a multi-set; None when they cannot be said."""
         return self._computing.tokens(exp, is_token)
+
+    def evaluated(self, exp: core.Exp) -> Computed:
+        """The value of an initial marking, by the evaluator that was lent."""
+        if self._compute is None:
+            return Computed(None)
+        return self._compute(self.program(), exp, fixed=False, real_time=self._ctx.real_time)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""

@@ -63,8 +63,10 @@ FUSION_MISMATCH = register(
     "fusion-mismatch",
     "places of a fusion set differ",
     "All places of a fusion set are one place, so they need the same colour set and the same "
-    "initial marking. Like CPN Tools pn2code compares the tokens, not the texts; but `3` and 1`3, a token and a "
-    "multi-set, differ. Where it cannot say what an initial marking is, it warns.",
+    "initial marking. Like CPN Tools pn2code compares the tokens with their time stamps, not the texts; but `3` and "
+    "1`3, a token and a multi-set, differ, and so do multi-sets with and without time stamps. One token with a time "
+    "stamp (`3@+2`) CPN Tools accepts at no place of a fusion set. Where pn2code cannot say what an initial marking is "
+    "(it depends on chance, or raises an exception), it warns.",
 )
 NET_EMPTY = register(
     "net-empty",
