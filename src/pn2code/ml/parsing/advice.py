@@ -130,7 +130,7 @@ def unsupported(name: str) -> str:
     if name == "inst":
         return (
             "it is the number of the page instance, which arcs, guards, delays, code segments and initial markings "
-            "know: give it to a function as an argument, as in `f (inst (), n)`"
+            "know, and the functions that they call: let one of them call it"
         )
     if name.endswith(".model_time"):
         return "it is the clock of the engine itself, a reference: write `time ()` for what `!` of it is"
