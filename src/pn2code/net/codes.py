@@ -138,9 +138,11 @@ UNSUPPORTED_EXCEPTION = register(
 UNSUPPORTED_TIMED_INPUT = register(
     "unsupported-timed-input",
     "this form of timed input inscription is not supported",
-    "On input arcs pn2code understands sums of `coefficient`value` with `@+` or `@++` delays. "
-    "Timed multi-sets computed in another way, or with absolute time stamps `@`, are not "
-    "supported there.",
+    "On input arcs pn2code understands sums of `coefficient`value` with `@+` or `@++` delays, and `if`, `case`, `let` "
+    "and calls of functions that give multi-sets with the delay 0. With another delay CPN Tools takes what is computed "
+    "before its time, but only at times that come about otherwise, which the net does not tell. Constants of timed "
+    "multi-sets have the times of their declaration. Neither is supported there, nor are absolute time stamps `@`, "
+    "which CPN Tools refuses.",
 )
 PLACE_COLSET = register(
     "place-colset",
