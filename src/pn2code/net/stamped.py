@@ -1,8 +1,8 @@
 """Timed multi-sets of input arcs that are computed, without a delay: `if c then 1`n@+0 else empty`.
 
 CPN Tools takes tokens with the values of the result. With a delay it takes them earlier, but looks whether it can only
-at times that come about otherwise (seen with its engine: with `1`3@+1` its clock goes to 6 for a token that is available
-at 7, with `if c then 1`3@+1 else empty` to 7). So only what has no delay, or the delay 0, is taken for the multi-set
+at times that come about otherwise (seen with its engine: with `1`3@+1` its clock goes to 6 for a token that is there at
+7, with `if c then 1`3@+1 else empty` to 7). So only what has no delay, or the delay 0, is taken for the multi-set
 without stamps; and no timed multi-set that was made before (`val late = 1`3@+2`), whose times are those of its
 declaration.
 """

@@ -56,7 +56,8 @@ def test_what_is_taken_and_when(
 
 @pytest.mark.parametrize(
     "inscription",
-    ["w5", "three k", "if k = 3 then 1`3@+3 else empty", "sum k", "now k +++ 1`4@+3", "late (k, 2)", "List.map (fn x => x) (1`k@+1)",
+    ["w5", "three k", "if k = 3 then 1`3@+3 else empty", "sum k", "now k +++ 1`4@+3", "late (k, 2)",
+     "List.map (fn x => x) (1`k@+1)",
      "if k = 3 then 1`3@+3 else 1`4@+1 +++ 1`3@+0"],
 )  # fmt: skip
 def test_what_is_not_told_apart(inscription: str) -> None:
