@@ -60,8 +60,8 @@ FOUND = [
     ("let val a = SimpleURef.uRef 1 val b = SimpleURef.uRef 2 in "
      "(ignore (SimpleURef.unify (op +) (a, b)); Int.toString (SimpleURef.!! a)) end", "3"),
     ('getOpt (PathUtil.existsFile (fn p => p = "b/f") ["a", "b/"] "f", "none")', "b/f"),
-    ("let open FormatComb in format (pad left 5 int o text \"|\" o list bool o option char) 12 [true] NONE end",
-     "   12|[true]NONE"),
+    ("let open FormatComb in format (pad left 5 int o text \"/\" o list bool o option char) 12 [true] NONE end",
+     "   12/[true]NONE"),
     ("let val (xs, rest) = GetOpt.getOpt {argOrder = GetOpt.Permute, errFn = fn _ => (), options = "
      '[{short = "v", long = ["verbose"], desc = GetOpt.NoArg (fn () => "V"), help = ""}, {short = "o", '
      'long = ["out"], desc = GetOpt.ReqArg (fn s => "O" ^ s, "F"), help = ""}]} ["-v", "a", "--out=b", "--ver"] '

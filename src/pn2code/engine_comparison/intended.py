@@ -50,8 +50,10 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **An arc without an orientation**, and an element inside the text of an inscription, are refused: CPN Tools writes neither, and the net could be read in
   two ways.
 * **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
-* **Library**: of the 345 structures that the engine has in scope some 90 are there; of the others (its compiler, its inner parts, `Base64`, `GetOpt`,
-  `PathUtil`, `SplayTree`, `UTF8`, ...) each function is refused by its name (`unsupported-function`). Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
-  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`.
+* **Library**: of the 345 structures that the engine has in scope some 100 are there; of the others (its compiler, its inner parts, the state-space library, ...)
+  each function is refused by its name (`unsupported-function`). So is `IOUtil`, which changes where the standard streams go. Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
+  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets and hash tables are there.
+* **`RealOrderStats`** leaves its array as it is; the engine's sorts a part of it, by random numbers, so that `UnivariateStats.averageDeviation` may have another last digit after `median`.
+* **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0. A literal below 2.2E~308 is `BadReal` there.
 * **Time zones**: dates are those of UTC.
 """
