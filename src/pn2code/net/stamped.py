@@ -53,7 +53,10 @@ class Stamped:
                 return made if isinstance(delay, core.Lit) and delay.value == 0 else None
             case core.If():
                 parts = self._each((e.then, e.otherwise), t, depth)
-                return None if parts is None else core.If(e.condition, *parts, t, e.span)
+                if parts is None:
+                    return None
+                then, otherwise = parts
+                return core.If(e.condition, then, otherwise, t, e.span)
             case core.Case():
                 bodies = self._each([rule.body for rule in e.rules], t, depth)
                 if bodies is None:
