@@ -21,7 +21,7 @@ _RULES: tuple[tuple[str, str, str, str], ...] = (
     ("value", "value", r"\bString\.fromCString\b", "`String.fromCString` reads up to what it cannot read"),
     ("value", "value", r"\btoCString\b", "`toCString` has three octal digits"),
     ("value", "raised", r"\bpad(Left|Right)\b.*~10737", "an Overflow in padding to a number below zero"),
-    ("raised", "value", r"\bIntInf\.(rem|quot|div|mod)\b", "the engine does not raise Div for 0 by 0"),
+    ("raised", "*", r"\bIntInf\.(rem|quot|div|mod)\b", "the engine does not raise Div for 0 by 0"),
     ("value", "value", r"\bChar\.fromString\b", "a quotation mark is read as a character"),
     ("raised", "value", r"\bUT\.col\b", "positions below zero of a union"),
     ("raised", "raised", r"\binteger(De|En)code\b", "another exception of a function of Comms/CPN"),
