@@ -20,6 +20,8 @@ net Numbered
   colset JOB = int timed;
   colset SEEN = product INT * INT;
   var n, k: INT;
+  fun number () = inst ();
+  fun times x = x * number ();
   page Top
     place In : INT = 2`1 ++ 3`2
     place Out : SEEN
@@ -31,10 +33,10 @@ net Numbered
     place Clock : JOB = 1`(inst ())
     trans Tick guard [n < 4] delay @+inst ()
       in Clock : n
-      out Clock : 1`(n + inst ()) @+ (10 * inst ())
-    trans Take guard [n = inst ()] code input (n); output (k); action let fun own x = x * inst () in own n end;
+      out Clock : 1`(n + number ()) @+ (times 10)
+    trans Take guard [n = number ()] code input (n); output (k); action let fun own x = x * inst () in own n end;
       in In : (inst () + 1)`n
-      out Out : (k, hd (List.map (fn x => x * inst ()) [100]) + let val f = fn x => x + inst () in f 1 end)
+      out Out : (k, hd (List.map (fn x => x * inst ()) [100]) + let val f = fn x => x + times 1 in f 1 end)
 """
 ENDS = {
     ("Top", "In", 1): "empty",

@@ -47,6 +47,28 @@ def cases() -> list[tuple[str, str]]:
 
 
 FOUND = [
+    ('String.concatWith "," (map Int.toString (map Word8.toInt (Word8Vector.toList (Base64.decode "TWFuTQ=="))))',
+     "77,97,110,77"),
+    ('Base64.encode (Byte.stringToBytes "pleasure.")', "cGxlYXN1cmUu"),
+    ('String.concatWith "," (map Word.toString (UTF8.explode "a\\195\\164\\226\\130\\172")) ^ UTF8.toString 0wx20AC',
+     "61,E4,20AC\\u20AC"),
+    ("ANSITerm.toString [ANSITerm.BF, ANSITerm.BG ANSITerm.Cyan] ^ \"x\"", "\033[1;46mx"),
+    ("Real.toString (RealOrderStats.median (Array.fromList [4.0, 1.0, 3.0, 9.0]))", "3.5"),
+    ("let open UnivariateStats val e = evaluate (foldl hadd (hempty ()) [1.0, 2.0, 6.0]) "
+     'in Int.toString (N e) ^ " " ^ Real.toString (mean e) ^ " " ^ Real.toString (variance e) ^ " " '
+     "^ Real.toString (median e) end", "3 3.0 7.0 2.0"),
+    ("let val a = SimpleURef.uRef 1 val b = SimpleURef.uRef 2 in "
+     "(ignore (SimpleURef.unify (op +) (a, b)); Int.toString (SimpleURef.!! a)) end", "3"),
+    ('getOpt (PathUtil.existsFile (fn p => p = "b/f") ["a", "b/"] "f", "none")', "b/f"),
+    ("let open FormatComb in format (pad left 5 int o text \"/\" o list bool o option char) 12 [true] NONE end",
+     "   12/[true]NONE"),
+    ("let val (xs, rest) = GetOpt.getOpt {argOrder = GetOpt.Permute, errFn = fn _ => (), options = "
+     '[{short = "v", long = ["verbose"], desc = GetOpt.NoArg (fn () => "V"), help = ""}, {short = "o", '
+     'long = ["out"], desc = GetOpt.ReqArg (fn s => "O" ^ s, "F"), help = ""}]} ["-v", "a", "--out=b", "--ver"] '
+     'in String.concatWith "," (xs ^^ rest) end', "V,Ob,V,a"),
+    ("case SplayTree.splay (fn x => Int.compare (x, 3), SplayTree.SplayObj {value = 5, left = SplayTree.SplayObj "
+     "{value = 3, left = SplayTree.SplayNil, right = SplayTree.SplayNil}, right = SplayTree.SplayNil}) of "
+     '(EQUAL, SplayTree.SplayObj {value, ...}) => Int.toString value | _ => "?"', "3"),
     ('String.concatWith "," (map (fn i => UE.mkstr (UE.col i) handle _ => "x") [0, 1, 2, 3, 4, 5, 6])',
      "EvenOf(2),x,x,FewOf(5),FewOf(3),FewOf(9),x"),
     ('String.concatWith "," (map (fn i => MIX.mkstr (MIX.col i) handle _ => "x") [0, 2, 3])', "(2,5),(2,9),x"),

@@ -18,10 +18,11 @@ Inscriptions and expressions also differ in the following, each on purpose:
   outside the range of the processor (`Math.tanh 1E10`, `Math.sin 1E300`); here they are those of C. So are `Real.rem` of numbers of very different size,
   `Real.toManExp` and `fromManExp` of zero and of non-finite numbers, and `Real.toLargeInt` of zero.
 * **`null`** tests a list, with a warning; in the engine it is the time 0, which hides the test.
-* **`inst ()`**, the number of the page instance, is in arcs, guards, delays and code segments what it is in the engine's simulator. Its state-space
-  tool has the number of another instance when a transition occurs (in a guard the right one), so that its graphs of such nets differ. In initial markings
-  the engine has a number that is the same for all instances of a page; here it is that of the instance, and `check` warns. Declared functions and
-  priorities that use it are refused (`unsupported-function`): give it to the function as an argument.
+* **`inst ()`**, the number of the page instance, is in arcs, guards, delays and code segments what it is in the engine's simulator, and so it is in functions that they call.
+  The engine's state-space tool has the number of another instance when a transition occurs (in a guard the right one), so that its graphs of such nets differ. In initial markings
+  the engine has a number that is the same for all instances of a page; here it is that of the instance, and `check` warns. Constants that ask for it (`val n = inst ()`: in the engine 1, or
+  what it has looked at last when it checks a declaration again), colour sets and priorities are refused
+  (`unsupported-function`), and so is a function that is used after a name in it has been declared again.
 * **A variable whose name is none of CPN ML** (`n-1`, `1n`) is accepted by the engine as long as nothing uses it; here it is refused. So are two transitions
   of one id, whose arcs cannot be told apart.
 * **Initial markings that change references** are evaluated once each, in the order of the file; the engine evaluates them when it checks the net
@@ -49,8 +50,10 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **An arc without an orientation**, and an element inside the text of an inscription, are refused: CPN Tools writes neither, and the net could be read in
   two ways.
 * **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
-* **Library**: of the 345 structures that the engine has in scope some 90 are there; of the others (its compiler, its inner parts, `Base64`, `GetOpt`,
-  `PathUtil`, `SplayTree`, `UTF8`, ...) each function is refused by its name (`unsupported-function`). Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
-  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`.
+* **Library**: of the 345 structures that the engine has in scope some 100 are there; of the others (its compiler, its inner parts, the state-space library, ...)
+  each function is refused by its name (`unsupported-function`). So is `IOUtil`, which changes where the standard streams go. Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
+  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets and hash tables are there.
+* **`RealOrderStats`** leaves its array as it is; the engine's sorts a part of it, by random numbers, so that `UnivariateStats.averageDeviation` may have another last digit after `median`.
+* **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0. A literal below 2.2E~308 is `BadReal` there.
 * **Time zones**: dates are those of UTC.
 """

@@ -49,15 +49,18 @@ from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.typing.context import Context, TooDeepError, suggestion
 from pn2code.ml.typing.declarations import Declarations
-from pn2code.ml.typing.declared import break_modules, declared_by, types_declared_by
+from pn2code.ml.typing.declared import break_modules, declared_by, names_in, types_declared_by
 from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
     BrokenType,
     ConEntry,
     HiddenEntry,
+    InstanceEntry,
+    InstanceFunction,
     Scope,
     UnsupportedEntry,
+    declared_at,
     library_scope,
 )
 from pn2code.ml.typing.expressions import Expressions
@@ -323,7 +326,9 @@ class Elaborator:
             changed = self._replace_values(changed)
         before = self._ctx.errors
         self._ctx.tainted = False
-        build = self._declare.declare(changed)
+        asks = self._asks(changed)
+        with self._on_page(asks):
+            build = self._declare.declare(changed)
         if self._ctx.errors == before and not self._ctx.tainted:
             self._ctx.resolve_pending()
         self._ctx.open_records.clear()
@@ -349,10 +354,20 @@ class Elaborator:
                 )
         self._hide(declared_by(changed), dec.span)
         made = build()
-        self._made += made
+        if not asks:
+            self._made += made
         for weak in self._ctx.weak:
             self._ctx.unifier.close(weak)
         self._ctx.weak.clear()
+        if asks:
+            names, bound = names_in(changed)
+            own = declared_by(changed)
+            known = {
+                name: declared_at(self._ctx.top, name) for name in (names | bound) - own - {"inst"}
+            }
+            for name in own:
+                self._ctx.top.values[name] = InstanceFunction(name, changed, known, bound)
+            return
         for one in made:
             if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
                 value = fold(one.value, self._constants)
@@ -362,6 +377,36 @@ class Elaborator:
                     self._bodies[one.pattern.symbol.uid] = one.value
             elif isinstance(one, core.RecBind):
                 self._bodies.update({symbol.uid: body for symbol, body in one.bindings})
+
+    def _asks(self, dec: s.Dec) -> bool:
+        """Whether it is a declaration of functions alone that ask for `inst ()`."""
+        is_of_functions = isinstance(dec, s.FunDec) or (
+            isinstance(dec, s.ValDec)
+            and all(isinstance(b.value, s.FnExp | s.NameExp) for b in dec.bindings)
+        )
+        if not is_of_functions:
+            return False
+        names, bound = names_in(dec)
+        free = names - bound
+        values = self._ctx.top.values
+        return ("inst" in free and "inst" not in values) or any(
+            isinstance(values.get(name), InstanceFunction) for name in free
+        )
+
+    @contextmanager
+    def _on_page(self, asks: bool) -> Iterator[None]:
+        """While functions that ask for `inst ()` are declared, they know it."""
+        values = self._ctx.top.values
+        is_new = asks and "inst" not in values
+        if is_new:
+            values["inst"] = InstanceEntry()
+        self._ctx.on_page = asks
+        try:
+            yield
+        finally:
+            self._ctx.on_page = False
+            if is_new:
+                del values["inst"]
 
     def unreadable(self, values: Sequence[str], types: Sequence[str]) -> None:
         """Names that declarations declare about which all has been said; nothing is said about their uses."""
@@ -569,6 +614,19 @@ class Elaborator:
         key = (text.text, text.origin.part, tuple(types), expected_name, output)
         return self._once(key, text, work)
 
+    def fits(self, text: SourceText, t: Type, expected_name: str) -> bool:
+        """Whether an initial marking that is well-typed could have this type as well: `empty` fits any multi-set."""
+        exp = self._parse(text)
+        quiet, self._ctx.d = self._ctx.d, Diagnostics()
+        errors = self._ctx.errors
+        try:
+            return exp is not None and (
+                self._inscriptions.expression(text, exp, [t], expected_name, {}) is not None
+            )
+        finally:
+            self._ctx.d = quiet
+            self._ctx.errors = errors
+
     def layered(self, text: SourceText, t: Type) -> tuple[core.Exp, core.Pat, core.Exp] | None:
         """`x as pattern` on an input arc: the token x, the pattern that binds, and the condition that x matches it.
 
@@ -691,6 +749,12 @@ class Elaborator:
     def tokens(self, exp: core.Exp, is_token: bool) -> Counter[Any] | None:
         """The tokens of an initial marking, which is one of them or a multi-set; None when they cannot be said."""
         return self._computing.tokens(exp, is_token)
+
+    def evaluated(self, exp: core.Exp) -> Computed:
+        """The value of an initial marking, by the evaluator that was lent."""
+        if self._compute is None:
+            return Computed(None)
+        return self._compute(self.program(), exp, fixed=False, real_time=self._ctx.real_time)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""

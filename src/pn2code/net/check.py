@@ -343,6 +343,12 @@ class _Checker:
         initial: tuple[Exp, Form] | None = None
         if text is not None:
             initial = typed_marking(self.elaborator, text, colset)
+        takes_stamps = text is None
+        if text is not None and initial is not None and colset.timed and place.fusion:
+            stamped = _form_type(Form.TIMED_MULTISET, colset.type)
+            takes_stamps = initial[1] is Form.MULTISET and self.elaborator.fits(
+                text, stamped, colset.name
+            )
         return TypedPlace(
             id=place.id,
             name=place.name,
@@ -352,6 +358,7 @@ class _Checker:
             port=place.port,
             fusion=place.fusion,
             origin=place.origin,
+            takes_stamps=takes_stamps,
         )
 
     def inscription(

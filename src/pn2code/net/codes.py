@@ -63,8 +63,10 @@ FUSION_MISMATCH = register(
     "fusion-mismatch",
     "places of a fusion set differ",
     "All places of a fusion set are one place, so they need the same colour set and the same "
-    "initial marking. Like CPN Tools pn2code compares the tokens, not the texts; but `3` and 1`3, a token and a "
-    "multi-set, differ. Where it cannot say what an initial marking is, it warns.",
+    "initial marking. Like CPN Tools pn2code compares the tokens with their time stamps, not the texts; but `3` and "
+    "1`3, a token and a multi-set, differ, and so do multi-sets with and without time stamps. One token with a time "
+    "stamp (`3@+2`) CPN Tools accepts at no place of a fusion set. Where pn2code cannot say what an initial marking is "
+    "(it depends on chance, or raises an exception), it warns.",
 )
 NET_EMPTY = register(
     "net-empty",
@@ -143,9 +145,11 @@ UNSUPPORTED_EXCEPTION = register(
 UNSUPPORTED_TIMED_INPUT = register(
     "unsupported-timed-input",
     "this form of timed input inscription is not supported",
-    "On input arcs pn2code understands sums of `coefficient`value` with `@+` or `@++` delays. "
-    "Timed multi-sets computed in another way, or with absolute time stamps `@`, are not "
-    "supported there.",
+    "On input arcs pn2code understands sums of `coefficient`value` with `@+` or `@++` delays, and `if`, `case`, `let` "
+    "and calls of functions that give multi-sets with the delay 0. With another delay CPN Tools takes what is computed "
+    "before its time, but only at times that come about otherwise, which the net does not tell. Constants of timed "
+    "multi-sets have the times of their declaration. Neither is supported there, nor are absolute time stamps `@`, "
+    "which CPN Tools refuses.",
 )
 PLACE_COLSET = register(
     "place-colset",

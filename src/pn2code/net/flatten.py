@@ -206,7 +206,7 @@ class _Flattener:
                 notes=[Note("the socket is declared here", socket.origin)],
                 hint="give both the same colour set",
             )
-        elif port.initial_text and _squeeze(port.initial_text) != _squeeze(socket.initial_text):
+        elif port.initial_text and _words(port.initial_text) != _words(socket.initial_text):
             # no instance: said once, however often the page is used
             self.d.warning(
                 PORT_INITIAL,
@@ -219,11 +219,20 @@ class _Flattener:
 
     def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> None:
         """A place of a fusion set must be as the other one is."""
+        if first.initial is not None and first.initial[1] is Form.TIMED_TOKEN:
+            self.d.error(
+                FUSION_MISMATCH,
+                f"the initial marking of place `{first.name}` of fusion set `{name}` is one token with a time stamp, "
+                "which CPN Tools compares with nothing: it refuses it as different (Mismatch in fusion group)",
+                first.origin,
+                hint=f"make it a multi-set: ``1`{first.initial_text.strip()}``",
+            )
+            return
         colsets = first.colset.name, other.colset.name
         what, is_certain = "", True
         if colsets[0] != colsets[1] and first.colset.resolved != other.colset.resolved:
             what = f"colour sets, `{colsets[0]}` and `{colsets[1]}`"
-        elif _squeeze(first.initial_text) != _squeeze(other.initial_text):
+        elif _words(first.initial_text) != _words(other.initial_text):
             is_same = self.have_same_tokens(first, other)
             if is_same:
                 return
@@ -243,20 +252,37 @@ class _Flattener:
     def have_same_tokens(self, first: TypedPlace, other: TypedPlace) -> bool | None:
         """Whether initial markings of different texts are the same for CPN Tools; None when it cannot be said.
 
-        It compares tokens, but one token is not the multi-set of it.
+        It compares tokens with their time stamps, but one token is not the multi-set of it, and a multi-set with time
+        stamps is none without them, not even an empty one; `empty` is both.
         """
         forms = {p.initial[1] if p.initial else Form.MULTISET for p in (first, other)}
-        if len(forms) > 1:
+        if len(forms) > 1 and not (
+            forms == {Form.MULTISET, Form.TIMED_MULTISET}
+            and any(p.takes_stamps for p in (first, other))
+        ):
             return False
         is_token = forms <= {Form.TOKEN, Form.TIMED_TOKEN}
-        a, b = (self.tokens(p, is_token) for p in (first, other))
-        return None if a is None or b is None else a == b
+        for tokens_of in (self.tokens, self.evaluated_tokens):
+            a, b = (tokens_of(p, is_token) for p in (first, other))
+            if a is not None and b is not None:
+                return a == b
+        return None
 
     def tokens(self, place: TypedPlace, is_token: bool) -> Counter[Any] | None:
         if place.initial is None:
             return Counter()
         elaborator = self.net.elaborator
         return None if elaborator is None else elaborator.tokens(place.initial[0], is_token)
+
+    def evaluated_tokens(self, place: TypedPlace, is_token: bool) -> Counter[Any] | None:
+        """The tokens by the evaluator that was lent, which knows all of CPN ML."""
+        if place.initial is None:
+            return Counter()
+        elaborator = self.net.elaborator
+        value = None if elaborator is None else elaborator.evaluated(place.initial[0]).value
+        if value is None:
+            return None
+        return Counter([value] if is_token else value)
 
     def places(self, groups: list[list[Key]]) -> list[FlatPlace]:
         short = {p.id: unique_names((x.id, x.name) for x in p.places) for p in self.net.pages}
@@ -355,5 +381,9 @@ def c_stem(file: str) -> str:
     return f"net_{stem}" if stem[0].isdigit() else stem
 
 
-def _squeeze(text: str) -> str:
-    return "".join(text.split())
+_WORD = re.compile(r"\"(?:[^\"\\]|\\.)*\"|[\w'.]+|[!%&$#+\-/:<=>?@\\~`^|*]+|\S", re.DOTALL)
+
+
+def _words(text: str) -> list[str]:
+    """A text without its blanks, but for those in strings and those that keep words apart."""
+    return _WORD.findall(text)

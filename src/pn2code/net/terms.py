@@ -34,6 +34,7 @@ from pn2code.ml.core.terms import (
 from pn2code.ml.core.types import INT, TRecord
 from pn2code.net.codes import UNSUPPORTED_TIMED_INPUT
 from pn2code.net.flat import Form, Term
+from pn2code.net.stamped import Stamped
 from pn2code.net.uses import NetVariables, pattern_variables
 
 MAX_PATTERN_LIST = 64
@@ -54,6 +55,7 @@ class TermReader:
         self.variables = variables
         self.values = {s.uid for s in program.globals.values()}
         self.d = d
+        self.stamped = Stamped(program)
         constructors: dict[str, Constructor] = {}
         if "list" in program.datatypes:
             constructors = {c.name: c for c, _ in program.datatypes["list"].constructors}
@@ -72,23 +74,33 @@ class TermReader:
     def timed(self, e: Exp) -> tuple[Term, ...] | None:
         """Terms of `ms @+ d +++ ...`, each with its delay."""
         found: list[Term] = []
+        computed: list[Exp] = []
         for part in split(e, ("Time.+++",)):
             token = binary(part, ("Time.token@+", "Time.token@++"))
             pair = token or binary(part, ("Time.@+", "Time.@++"))
             if pair is None:
-                self.refuse_timed(part)
-                return None
+                tokens = self.stamped.tokens(part)
+                if tokens is None:
+                    self.refuse_timed(part)
+                    return None
+                found.append(self.term(_one(part), tokens, None, True, part))
+                computed.append(part)
+                continue
             value, delay = pair
             if token is None:
                 found += self.summands(value, delay)
             else:
                 found.append(self.term(_one(value), value, delay, False, part))
+        delays = [term.delay for term in found if term.delay is not None]
+        if computed and any(not isinstance(d, Lit) or d.value != 0 for d in delays):
+            self.refuse_timed(computed[0])
+            return None
         return tuple(found)
 
     def refuse_timed(self, part: Exp) -> None:
         """Say why an input arc cannot take this: it has stamps, or is computed."""
         message = "this form of timed multi-set is not supported on an input arc"
-        label = "neither `multi-set @+ delay` nor a sum of these"
+        label = "neither `multi-set @+ delay` nor a sum of these, and not computed without delays"
         hint = "write the summands with `@+`, or leave the delay out"
         counted = binary(part, ("Ms.`",))
         if binary(counted[1] if counted else part, ("Time.@",)) is not None:

@@ -18,7 +18,19 @@ from pn2code.net.linked import FusionSet, Net, SubstitutionTransition
 
 @frozen
 class TypedPlace:
-    """A place with its colour set and initial marking; `initial_text` is what the user wrote, for comparisons."""
+    """A place with its colour set and initial marking.
+
+    Args:
+        id: in the file.
+        name: as drawn.
+        colset: its colour set.
+        initial: its initial marking.
+        initial_text: what the user wrote, for comparisons.
+        port: its type, if it is one.
+        fusion: its fusion set.
+        origin: where it is.
+        takes_stamps: whether an initial marking that was taken for one without time stamps fits one with them, too.
+    """
 
     id: str
     name: str
@@ -28,6 +40,7 @@ class TypedPlace:
     port: str
     fusion: str
     origin: Origin
+    takes_stamps: bool = False
 
 
 @frozen

@@ -14,7 +14,13 @@ HEAD = """
       colset L = list INT;
       colset C = with a | b;
       val k = 3;
+      val late = 4;
+      val stamped = 1`3@+2 +++ 1`4@+1;
+      globref g = 5;
+      colset P = product INT * INT timed;
+      colset U = UNIT timed;
       fun upto n = if n = 0 then empty else 1`n ++ upto (n - 1);
+      fun clocked n = if n = 0 then empty else (1`n@+n) +++ clocked (n - 1);
 """
 
 
@@ -45,6 +51,31 @@ def found(colset: str, first: str, second: str) -> list[Severity]:
         ("UNIT", "2", "1`()++1`()"),
         ("L", "1`[1,2]", "[[1,2]]"),
         ("T", "1`3@+2 +++ 1`4@+1", "1`4@+1 +++ 1`3@+2"),
+        ("T", "1`3@2", "1`3@+2"),
+        ("T", "1`3@2+++1`4@1", "1`4@1+++1`3@2"),
+        ("T", "1`3@2+++1`3@1", "1`3@1+++1`3@2"),
+        ("T", "2`3@2", "1`3@2+++1`3@2"),
+        ("T", "1`3@+late", "1`3@+4"),
+        ("T", "stamped", "1`4@1 +++ 1`3@2"),
+        ("T", "clocked 2", "1`2@2+++1`1@1"),
+        ("T", "1`3@+(!g)", "1`3@+5"),
+        ("T", "1`3@time()", "1`3@0"),
+        ("T", "1`3@(~1)", "1`3@(0-1)"),
+        ("T", "1`3@(ModelTime.fromInt k)", "1`3@3"),
+        ("T", "if true then 1`3@1 else empty", "1`3@1"),
+        ("T", "List.map (fn x => x) (1`3@1)", "1`3@1"),
+        ("T", "(1`1++1`2)@++2", "1`2@2+++1`1@2"),
+        ("T", "3", "k"),
+        ("P", "1`(1,2)@2", "1`(1,1+1)@(1+1)"),
+        ("U", "1`()@2", "1`()@+2"),
+        ("T", "0`3@1", ""),
+        ("T", "0`3@1", "[]"),
+        ("T", "if k=3 then empty else []", "0`3@1"),
+        ("T", "empty++empty", "0`3@1"),
+        ("T", "empty@+3", ""),
+        ("T", "clocked 0", "0`3@1"),
+        ("C", "C.all()", "1`b++1`a"),
+        ("INT", "1`(!g)", "1`5"),
     ],
 )
 def test_the_same_tokens(colset: str, first: str, second: str) -> None:
@@ -60,10 +91,42 @@ def test_the_same_tokens(colset: str, first: str, second: str) -> None:
         ("T", "1`3@+2", "1`3@+1"),
         ("T", "3@+2", "1`3@+2"),
         ("T", "1`3", "1`3@+0"),
+        ("T", "1`3@2", "1`3@1"),
+        ("T", "2`3@2", "1`3@2+++1`3@1"),
+        ("T", "1`3@+late", "1`3@+5"),
+        ("T", "stamped", "1`4@1 +++ 1`3@3"),
+        ("T", "clocked 2", "1`2@1+++1`1@1"),
+        ("T", "1`3@+(!g)", "1`3@+6"),
+        ("P", "1`(1,2)@2+++1`(1,3)@2", "1`(1,3)@2+++1`(1,2)@1"),
+        ("T", "0`3@1", "0`3"),
+        ("T", "0`3@1", "upto 0"),
+        ("T", "0`3@1", "tl [3]"),
+        ("T", "upto 0", "clocked 0"),
+        ("T", "empty@+3", "0`3"),
+        ("C", "C.all()", "1`a"),
+        ("STRING", '1`"a b"', '1`"ab"'),
     ],
 )
 def test_other_tokens(colset: str, first: str, second: str) -> None:
     assert found(colset, first, second) == [Severity.ERROR]
+
+
+@pytest.mark.parametrize(
+    ("colset", "first", "second"),
+    [
+        ("T", "3@2", "3@2"),
+        ("T", "3@+2", "3 @+2"),
+        ("U", "()@2", "()@2"),
+        ("P", "(1,2)@2", "(1,2)@2"),
+    ],
+)
+def test_one_token_with_a_time_stamp_is_compared_with_nothing(
+    colset: str, first: str, second: str
+) -> None:
+    assert found(colset, first, second) == [Severity.ERROR] * 2
+    alone = diagnose(HEAD + f"\n      page Top\n        place A fusion F : {colset} = {first}\n")
+    assert [x.code for x in alone.errors] == ["fusion-mismatch"]
+    assert "1`" in alone.errors[0].hint
 
 
 @pytest.mark.parametrize("second", ["1`(discrete (1, 1))", "1`(hd [])"])
@@ -86,8 +149,8 @@ def test_each_place_is_compared_with_the_last_of_the_first_page() -> None:
 
 
 def test_values_without_an_argument_are_not_computed() -> None:
-    """`C.all ()` once ended in a KeyError, in bounds of colour sets, too, which the evaluator now computes."""
-    assert found("C", "C.all()", "1`b ++ 1`a") == [Severity.WARNING]
+    """`C.all ()` once ended in a KeyError, in bounds of colour sets, too; the evaluator computes both."""
+    assert not found("C", "C.all()", "1`b ++ 1`a")
     d = diagnose(
         HEAD
         + "      val n = length (C.all ());\n      colset X = int with 0..n;\n      place A : X"

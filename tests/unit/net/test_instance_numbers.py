@@ -80,14 +80,68 @@ def test_an_initial_marking_has_it_with_a_warning() -> None:
 
 
 @pytest.mark.parametrize(
-    "declaration",
-    ["fun own () = inst ();", "val own = inst;", "fun own x = let val n = inst () in n + x end;"],
+    ("declarations", "value", "one", "two"),
+    [
+        ("fun own () = inst ();", "own ()", 1, 2),
+        ("val own = inst;", "own ()", 1, 2),
+        ("val own = fn x => x * inst ();", "own 5", 5, 10),
+        ("fun own x = let val n = inst () in n + x end;", "own 10", 11, 12),
+        ("fun own () = inst (); fun plus x = x + own ();", "plus 10 + own ()", 12, 14),
+        ("fun own 0 = inst () | own n = own (n - 1) + 1;", "own 3", 4, 5),
+        ("fun a 0 = inst () | a n = b n and b n = a (n - 1) * 10;", "a 2", 100, 200),
+        ("fun own (f, x) = (inst (), f x);", "#1 (own (rev, [1])) + #1 (own (not, true))", 2, 4),
+        ("fun own () = inst ();", "let fun own () = 7 + inst () in own () end", 8, 9),
+        ("val c = 5; fun own () = c * inst ();", "own ()", 5, 10),
+        ("fun own x = x + inst (); val x = 3;", "own x", 4, 5),
+    ],
 )
-def test_a_declaration_has_none(declaration: str) -> None:
-    text = net().replace("fun twice x = 2 * x;", declaration + " fun twice x = 2 * x;")
-    (error,) = diagnose(text).errors
-    assert error.code == "unsupported-function" and "`inst`" in error.message
-    assert "give it to a function as an argument" in str(error.hint)
+def test_declared_functions_have_that_of_where_they_are_called(
+    declarations: str, value: str, one: int, two: int
+) -> None:
+    """As the engine of CPN Tools was seen to do in runs."""
+    text = net(value=value, action=value).replace("fun twice x = 2 * x;", declarations)
+    game = Game(flat(text))
+    while game.enabled():
+        game.fire(game.enabled()[0])
+    assert game.marking_text("Top.Out") == f"1`({one},{one})++\n1`({two},{two})"
+
+
+@pytest.mark.parametrize(
+    ("declaration", "why"),
+    [
+        ("val own = inst ();", "`inst`"),
+        ("fun own () = inst (); val n = own ();", "`own` is not supported here"),
+        ("fun own (n : int) = n < inst (); colset E = subset INT by own;", "`own`"),
+        (
+            "val c = 5; fun own () = c * inst (); val c = 6; fun twice (x : int) = x;",
+            "`c`, which is",
+        ),
+    ],
+)
+def test_where_no_instance_is_known_there_is_none(declaration: str, why: str) -> None:
+    value = "own ()" if "c = 6" in declaration else "1"
+    text = net(value=value).replace("fun twice x = 2 * x;", declaration.replace("; ", ";\n  "))
+    error = diagnose(text).errors[0]
+    assert error.code == "unsupported-function" and why in error.message
+
+
+@pytest.mark.parametrize(
+    "declaration",
+    [
+        "fun own inst = inst + 1; val n = own 2;",
+        "fun own x = let fun inst () = x in inst () end; val n = own 2;",
+        "fun inst 0 = 1 | inst n = inst (n - 1); val n = inst 2;",
+        "fun ask () = inst (); fun own ask = ask + 1; val n = own 2;",
+    ],
+)
+def test_names_that_only_look_like_it(declaration: str) -> None:
+    text = net(guard="n > 0", value="1", action="1").replace("fun twice x = 2 * x;", declaration)
+    assert not diagnose(text).errors
+
+
+def test_a_function_that_nobody_calls_is_typed() -> None:
+    text = net().replace("fun twice x = 2 * x;", "fun own x = inst () ^ x;")
+    assert [e.code for e in diagnose(text).errors] == ["type-mismatch"]
 
 
 def test_a_priority_has_none() -> None:

@@ -35,7 +35,8 @@ fun OS_Path_splitDirFile path =
     end
 
 fun OS_Path_joinDirFile {dir, file} =
-    let val all = arcs dir
+    let val given = arcs dir
+        val all = if List.null given orelse List.last given <> "" then given else front given
         val absolute = OS_Path_isAbsolute dir
     in
         if String.isSubstring "/" file then raise OS.Path.InvalidArc

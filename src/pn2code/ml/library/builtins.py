@@ -266,9 +266,7 @@ SMLofNJ StringCvt Unix Posix Socket Word8ArraySlice CPN'Replications
 Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
-UTILITIES = frozenset(
-    {"Base64", "GetOpt", "IOUtil", "PathUtil", "RealOrderStats", "SplayTree", "UnivariateStats"}
-)
+UTILITIES = frozenset({"IOUtil"})
 """Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
 
 STRUCTURES: frozenset[str] = frozenset(

@@ -130,8 +130,10 @@ def unsupported(name: str) -> str:
     if name == "inst":
         return (
             "it is the number of the page instance, which arcs, guards, delays, code segments and initial markings "
-            "know: give it to a function as an argument, as in `f (inst (), n)`"
+            "know, and the functions that they call: let one of them call it"
         )
+    if name.startswith("IOUtil."):
+        return "it lets a function read from or write to a file in place of the standard streams: use `TextIO.openIn`"
     if name.endswith(".model_time"):
         return "it is the clock of the engine itself, a reference: write `time ()` for what `!` of it is"
     return "write a function of your own for it" if "." in name else ""

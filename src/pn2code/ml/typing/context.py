@@ -101,6 +101,7 @@ class Context:
         unread_files: files of declarations that are not there or could not be read.
         announced: gives all names that the net declares anywhere.
         mentions_instances: whether an inscription uses `inst`.
+        on_page: whether what is typed stands on a page, whose instances have numbers.
         warned: element, part and function of each warning about a function that cannot run here.
     """
 
@@ -127,6 +128,7 @@ class Context:
     unread_files: list[str] = field(default_factory=list)
     announced: Callable[[], frozenset[str]] = frozenset
     mentions_instances: bool = False
+    on_page: bool = False
     warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
+from typing import Any
 
 from pn2code.diagnostics import Span
 from pn2code.ml.parsing import syntax as s
@@ -30,6 +32,27 @@ def declared_by(dec: s.Dec) -> set[str]:
             return {n for x in dec.declarations for n in declared_by(x)}
         case _:
             return set()
+
+
+def names_in(dec: s.Dec) -> tuple[frozenset[str], frozenset[str]]:
+    """The names of expressions in a declaration, and those of its patterns and functions."""
+    used: set[str] = set()
+    bound: set[str] = set()
+    todo: list[Any] = [dec]
+    while todo:
+        one = todo.pop()
+        if isinstance(one, tuple):
+            todo.extend(one)
+        elif isinstance(one, s.NameExp):
+            used.add(one.name)
+        elif isinstance(one, s.NamePat):
+            bound.add(one.name)
+        elif isinstance(one, s.FunBinding):
+            bound.add(one.name)
+            todo.append(one.clauses)
+        elif dataclasses.is_dataclass(one) and not isinstance(one, Span):
+            todo.extend(getattr(one, part.name) for part in dataclasses.fields(one))
+    return frozenset(used), frozenset(bound)
 
 
 def types_declared_by(dec: s.Dec) -> set[str]:

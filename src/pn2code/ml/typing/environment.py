@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from functools import cache
 
@@ -25,7 +25,7 @@ from pn2code.ml.library.builtins import (
 )
 from pn2code.ml.library.datatypes import DATATYPES, TYPE_ABBREVIATIONS, TYPE_ARITY
 from pn2code.ml.library.exceptions import EXCEPTIONS, QUALIFIED_EXCEPTIONS, TOP_LEVEL_EXCEPTIONS
-from pn2code.ml.parsing.syntax import FunctorBinding, Sig
+from pn2code.ml.parsing.syntax import Dec, FunctorBinding, Sig
 from pn2code.ml.typing.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.typing.inference import Quant, Ty
 
@@ -130,13 +130,45 @@ class InstanceEntry:
 
 
 @frozen
+class InstanceFunction:
+    """A declared function that asks for `inst ()`: each inscription of a page has its own one, of its own instance.
+
+    Args:
+        name: of the function.
+        declaration: what declares it.
+        known: what the names in it stood for at top level; None for what the net has not declared.
+        bound: those that its patterns may bind.
+    """
+
+    name: str
+    declaration: Dec
+    known: Mapping[str, object]
+    bound: frozenset[str]
+
+    def changed(self, top: Scope) -> str:
+        """A name in it that stands for something else by now; "" if there is none."""
+        for name, before in self.known.items():
+            now = declared_at(top, name)
+            own = before is None and name in self.bound and not isinstance(now, ConEntry)
+            if now is not before and not own:
+                return name
+        return ""
+
+
+def declared_at(top: Scope, name: str) -> object:
+    """What the net has declared under a name, or as the structure of a qualified name."""
+    first, *rest = split_name(name)
+    return top.structures.get(first) if rest else top.values.get(name)
+
+
+@frozen
 class HiddenEntry:
     """A variable of the net whose name has become that of a constructor: it cannot be used."""
 
 
 Entry = (
     Binding | BuiltinEntry | OverloadedEntry | ConEntry | EmptyEntry | UnitEntry | ColsetEntry | BrokenEntry
-    | UnsupportedEntry | InstanceEntry | HiddenEntry | SealedEntry
+    | UnsupportedEntry | InstanceEntry | InstanceFunction | HiddenEntry | SealedEntry
 )  # fmt: skip
 
 

@@ -19,7 +19,16 @@ from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing import matches, type_advice
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.context import BROKEN, Context, Draft, no_expression, quoted
-from pn2code.ml.typing.environment import Binding, BuiltinEntry, ConEntry, Entry
+from pn2code.ml.typing.environment import (
+    Binding,
+    BuiltinEntry,
+    ConEntry,
+    Entry,
+    InstanceEntry,
+    InstanceFunction,
+    Scope,
+    UnsupportedEntry,
+)
 from pn2code.ml.typing.inference import (
     ERROR,
     I_BOOL,
@@ -62,6 +71,7 @@ class Expressions:
         self._patterns = patterns
         self._names = names
         self.declare: DeclareFunction
+        names.own = self._own
 
     # --- checking against a type
 
@@ -508,6 +518,19 @@ class Expressions:
             return core.Let(made, inner, inner.type, e.span) if made else inner
 
         return Draft(t, build)
+
+    def _own(self, entry: InstanceFunction, span: Span) -> Draft:
+        """A declared function that asks for `inst ()`, declared again where it is used."""
+        outer = self._ctx.scope
+        self._ctx.scope = Scope(self._ctx.top)
+        if isinstance(self._ctx.scope.value("inst"), UnsupportedEntry):
+            self._ctx.scope.values["inst"] = InstanceEntry()
+        try:
+            return self.infer(
+                s.LetExp((entry.declaration,), s.NameExp(entry.name, False, span), span)
+            )
+        finally:
+            self._ctx.scope = outer
 
     def _sequence(self, e: s.SequenceExp, t: Ty, what: str) -> Draft:
         first = [self.infer(x) for x in e.items[:-1]]

@@ -93,6 +93,7 @@ class Inscriptions:
         self._ctx.scope = Scope(scope)
         if on_page and isinstance(scope.value("inst"), UnsupportedEntry):
             self._ctx.scope.values["inst"] = InstanceEntry()
+        self._ctx.on_page = on_page
         self._ctx.tainted = False
         self._ctx.unifier.level = 1
         self._ctx.tyvars.append({})
@@ -100,6 +101,7 @@ class Inscriptions:
             yield
         finally:
             self._ctx.scope = self._ctx.top
+            self._ctx.on_page = False
             self._ctx.unifier.level = 0
             self._ctx.tyvars.clear()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -24,6 +26,7 @@ from pn2code.ml.typing.environment import (
     Entry,
     HiddenEntry,
     InstanceEntry,
+    InstanceFunction,
     OverloadedEntry,
     SealedEntry,
     UnitEntry,
@@ -65,6 +68,7 @@ class Names:
     def __init__(self, ctx: Context) -> None:
         self._ctx = ctx
         self._types: dict[str, Ty] = {}
+        self.own: Callable[[InstanceFunction, Span], Draft]
 
     def lookup(self, name: str) -> Entry | None:
         """What a name means: a value in scope, or a function of a colour set's structure."""
@@ -157,6 +161,26 @@ class Names:
                     from_type(number, []),
                     lambda: core.Builtin(core.INSTANCE_NUMBER, number, span),
                 )
+            case InstanceFunction() if self._ctx.on_page:
+                other = entry.changed(self._ctx.top)
+                if not other:
+                    return self.own(entry, span)
+                self._ctx.error(
+                    codes.UNSUPPORTED_BUILTIN,
+                    f"function `{name}` is not supported: it uses `inst ()`, and `{other}`, which is declared again "
+                    "after it",
+                    span,
+                    hint=f"give the second `{other}` another name",
+                )
+                return BROKEN
+            case InstanceFunction():
+                self._ctx.error(
+                    codes.UNSUPPORTED_BUILTIN,
+                    f"function `{name}` is not supported here: it uses `inst`, the number of the page instance",
+                    span,
+                    hint=advice.unsupported("inst"),
+                )
+                return BROKEN
             case UnsupportedEntry():
                 self._ctx.error(
                     codes.UNSUPPORTED_BUILTIN,

@@ -170,6 +170,8 @@ def _join(p: tuple[str, str]) -> str:
     arcs, absolute, volume = parts(folder)
     if not arcs and not absolute and file == "":
         return ""
+    if arcs and arcs[-1] == "":
+        arcs = arcs[:-1]  # the folder ends with a slash
     return joined(((*arcs, file), absolute, volume)) if (arcs or file or absolute) else file
 
 
