@@ -9,7 +9,8 @@ RUNTIME_ERROR = register(
     "the net failed while it ran",
     "An inscription raised an exception of CPN ML (e.g. `Overflow`, `Div`, `Empty`), did not terminate, or gave a "
     "token that is not in the colour set of its place. CPN Tools stops the simulation there, too. The message names "
-    "the element; if the exception was raised in a declaration, a note says where.",
+    "the element; if the exception was raised in a declaration, a note says where. `Io` is raised where a file "
+    "cannot be opened: a net has only those below the folder of `--files DIR`.",
 )
 TRACE_REFUSED = register(
     "trace-refused",

@@ -14,7 +14,7 @@ from pn2code.monitors.folder import OUTPUT
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import RUNTIME_ERROR
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.enabling import GameError, about_files
 from pn2code.semantics.game.marking import Marking
 
 Progress = Callable[[int, int | float], None]
@@ -107,7 +107,8 @@ class Failure:
             values = ", ".join(f"{k} = {v}" for k, v in (self.binding or {}).items())
             with_binding = f" with {values}" if values else ""
             notes.append(f"transition `{self.transition.name}`{with_binding}, after {steps} steps")
-        d.error(RUNTIME_ERROR, readable(self.message), self.origin, notes=notes)
+        says = readable(self.message)
+        d.error(RUNTIME_ERROR, says, self.origin, notes=notes, hint=about_files(says))
 
     def row(self) -> dict[str, Any]:
         """For programs."""

@@ -18,6 +18,7 @@ from pn2code.division import divided
 from pn2code.net import guard_order
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
+from pn2code.semantics.game.enabling import about_files
 from pn2code.verdict import channel_model, closed, controller, other_orders, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
@@ -367,7 +368,8 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         f"{says} in a reachable marking",
         origin or Origin(opened.flat.file),
         notes=notes,
-        hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
+        hint=about_files(says)
+        or "`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
     )
 
 

@@ -25,7 +25,6 @@ from pn2code.ml.core.types import (
     BOOL,
     INT,
     INTINF,
-    REAL,
     STRING,
     TCon,
     TFun,
@@ -68,7 +67,6 @@ _REPRESENTATIONS: Mapping[str, Type] = {
     "Time.time": INTINF,
     "Timer.real_timer": INTINF,
     "Timer.cpu_timer": INTINF,
-    "Date.date": tuple_of(REAL, INT),
     "TextIO.instream": tuple_of(STRING, STRING, TCon("ref", (INT,)), TCon("ref", (BOOL,))),
     "TextIO.outstream": tuple_of(STRING, INT, TCon("ref", (BOOL,))),
     "OS.FileSys.dirstream": tuple_of(

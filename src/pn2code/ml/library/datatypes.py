@@ -17,9 +17,6 @@ def _datatype(name: str, generics: int, *constructors: tuple[str, Type | None]) 
     return DatatypeDec(name, generics, made, None)
 
 
-_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
-
-
 DATATYPES: dict[str, DatatypeDec] = {
     "bool": _datatype("bool", 0, ("false", None), ("true", None)),
     "list": _datatype("list", 1, ("nil", None), ("::", tuple_of(TVar(0), _LIST_A))),
@@ -47,10 +44,6 @@ DATATYPES: dict[str, DatatypeDec] = {
     "OS.FileSys.access_mode": _datatype(
         "OS.FileSys.access_mode", 0, ("A_READ", None), ("A_WRITE", None), ("A_EXEC", None)
     ),
-    "Date.month": _datatype("Date.month", 0, *((name, None) for name in _MONTHS)),
-    "Date.weekday": _datatype(
-        "Date.weekday", 0, *((d, None) for d in ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"])
-    ),
 }
 """The built-in data types by name; constructors of those with a qualified name are in that structure only."""
 
@@ -63,7 +56,7 @@ NIL, CONS = (c for c, _ in DATATYPES["list"].constructors)
 
 _ABSTRACT = (
     "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "OS.Process.status", "OS.syserror", "Time.time",
-    "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand",
+    "Timer.real_timer", "Timer.cpu_timer", "Random.rand",
     "Word8Vector.vector", *(name for name in WORD_BITS if "." in name), *(f"{name}.int" for name in INTEGERS),
 )  # fmt: skip
 
@@ -91,7 +84,7 @@ TYPE_ABBREVIATIONS: dict[str, str] = {
 
 
 NO_EQUALITY: frozenset[str] = frozenset(
-    {"exn", "substring", "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "Random.rand", "Date.date",
+    {"exn", "substring", "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "Random.rand",
      "Timer.real_timer", "Timer.cpu_timer"}
 )  # fmt: skip
 """Type constructors whose values have no equality (functions have none either). `real` has: CPN Tools patched it in."""

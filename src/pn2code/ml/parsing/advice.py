@@ -73,6 +73,7 @@ _OUTSIDE = {
     "SPN": "BritNeY",
     "Britney": "BritNeY",
     "TCP": "sockets",
+    "Visualize": "the visualization extension",
 }
 
 

@@ -103,6 +103,7 @@ class Context:
         mentions_instances: whether an inscription uses `inst`.
         on_page: whether what is typed stands on a page, whose instances have numbers.
         warned: element, part and function of each warning about a function that cannot run here.
+        division: the innermost `/` whose operands are being looked at.
     """
 
     d: Diagnostics
@@ -130,6 +131,7 @@ class Context:
     mentions_instances: bool = False
     on_page: bool = False
     warned: set[tuple[str, str, str]] = field(default_factory=set)
+    division: s.InfixExp | None = None
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG
     _names: dict[Type, str | None] = field(default_factory=dict)
@@ -369,7 +371,7 @@ class Context:
                     span,
                     label=f"this is `{show(problem.left)}`",
                     hint=type_advice.wrong_operand(what, problem.left, span.text)
-                    or conversion(problem.left, names),
+                    or self._conversion(what, problem.left, names, span),
                 )
             case _:
                 notes = label_notes(found, expected)
@@ -385,10 +387,20 @@ class Context:
                     label=f"this is `{shown}`",
                     notes=notes,
                     hint=type_advice.wrong_operand(what, found, span.text, expected)
-                    or conversion(found, (_name(expected),))
+                    or self._conversion(what, found, (_name(expected),), span)
                     or self.constructor_hint(found, expected, span.text)
                     or type_advice.wrong_value(found, expected, span.text, what),
                 )
+
+    def _conversion(self, what: str, found: Ty, wanted: Iterable[str], span: Span) -> str:
+        """How to convert `what`, which is at `span`."""
+        hint = conversion(found, wanted)
+        if self.real_time and what == "delay" and hint.startswith("convert with `floor`"):
+            return f"a delay that is real is written with `@++`; or {hint}"
+        divided = self.division is not None and span in type_advice.terms(self.division)
+        if divided and hint.startswith("convert with `real`"):
+            return f"{hint}; `/` divides reals, integers are divided with `div`"
+        return hint
 
     def colours_hint(self, name: str, expected: Ty | None) -> tuple[str, str]:
         """For a name that is none, where a value of `expected` belongs: a colour that is like it, and all colours."""

@@ -293,10 +293,13 @@ class Expressions:
                 self._ctx.unify(
                     i_record(both), t, e.operator.span, f"operand pair of {quoted(name)}"
                 )
-            before = self._ctx.errors
+            before, outside = self._ctx.errors, self._ctx.division
+            if name == "/":
+                self._ctx.division = e
             left = self.check(e.left, both["1"], f"left operand of {quoted(name)}")
             wanted = both["2"] if self._ctx.errors == before else ERROR
             right = self.check(e.right, wanted, f"right operand of {quoted(name)}")
+            self._ctx.division = outside
             return _pair(left, right, e.span)
 
         return self.application(operator, e.operator, pair, e.span, expected)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
+from pn2code.diagnostics import Span
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.ml.library.datatypes import LITERAL_TYPES, WORD_TYPES
+from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing.inference import ICon, IFun, IRec, Meta, Ty, prune
 
 _OPERAND = re.compile(r"(?:left |right )?operand of (?:`(.+)`|the backquote)")
@@ -132,6 +135,17 @@ def wrong_operand(what: str, found: Ty, text: str, wanted: Ty | None = None) -> 
     if what.endswith("argument of `size`") and kind == "string":
         return "`size` counts the tokens of a multi-set; the length of a string is `String.size`"
     return ""
+
+
+def terms(division: s.InfixExp) -> Iterator[Span]:
+    """Where the numbers stand that are added and multiplied before they are divided."""
+    left = [division.left, division.right]
+    while left:
+        e = left.pop()
+        if isinstance(e, s.InfixExp) and e.operator.name in ("+", "-", "*"):
+            left += (e.left, e.right)
+        else:
+            yield e.span
 
 
 def _is_sequence(found: Ty) -> bool:

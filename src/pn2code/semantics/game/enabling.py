@@ -10,6 +10,7 @@ Whatever fails ends it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -71,13 +72,26 @@ class GameError(Exception):
 
     def report(self, d: Diagnostics) -> None:
         """As a diagnostic."""
-        d.error(RUNTIME_ERROR, self.message, self.origin, notes=self.notes())
+        d.error(
+            RUNTIME_ERROR,
+            self.message,
+            self.origin,
+            notes=self.notes(),
+            hint=about_files(self.message),
+        )
 
     def notes(self) -> list[Note]:
         """The text that raises it, if that is known, with its place."""
         if self.span is None:
             return []
         return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
+
+
+def about_files(message: str) -> str:
+    """What to do about an exception of a file; nothing of others."""
+    if re.search(r"raised (?:the exception )?`(?:IO\.)?Io\b", message) is None:
+        return ""
+    return "the net has no files but those below the folder of `pn2code simulate --files DIR`"
 
 
 class NoMatchError(GameError):
