@@ -53,7 +53,9 @@ class NoPieces(ValueError):  # noqa: N818
 @lru_cache(maxsize=64)
 def pieces(path: Path, most: int) -> tuple[Array, ...]:
     """The points of at most so many convex pieces that cover a mesh file."""
-    from importlib import metadata  # takes as long as reading a small net, and few cells have such meshes
+    from importlib import (
+        metadata,  # takes as long as reading a small net, and few cells have such meshes
+    )
 
     try:
         points, triangles = read(path)

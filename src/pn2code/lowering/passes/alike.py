@@ -80,7 +80,7 @@ class _Shape:
         return None if any(self._all[p].packed is None for p in self.places) else parts
 
     def _walk(self, items: Iterable[object]) -> Iterator[object]:
-        waiting = [*items]
+        waiting: list[Any] = [*items]
         while waiting:
             item = waiting.pop()
             if isinstance(item, tuple):

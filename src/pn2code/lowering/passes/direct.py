@@ -24,7 +24,7 @@ def with_direct(net: ir.NetIR, reach: Reach) -> ir.NetIR:
 def _is_direct(net: ir.NetIR, t: ir.Transition, reach: Reach) -> bool:
     """Whether the moves are known one by one or as `sums`; what is taken must be what was found."""
     sums = {(s.place, s.multiset) for s in t.sums}
-    nodes = list(ir_nodes(t.fire))
+    nodes = reach.nodes(t.fire)
     takes = [n for n in nodes if isinstance(n, ir.Take)]
     puts = [n for n in nodes if isinstance(n, ir.Put)]
     moved = {n.place for n in takes} | {n.place for n in puts}

@@ -33,7 +33,7 @@ _OVERFLOWING = frozenset({*EXACT, *DIVISIONS})
 
 
 def _may_overflow(node: object) -> bool:
-    return node.__class__ is ir.Op and node.name in _OVERFLOWING  # type: ignore[attr-defined]
+    return node.__class__ is ir.Op and node.name in _OVERFLOWING
 
 
 def with_ranges(net: ir.NetIR) -> ir.NetIR:

@@ -42,7 +42,7 @@ def _find(
 ) -> dict[tuple[int, ir.Ir], ir.Sum]:
     """The sums of a transition by place and multi-set."""
     found: dict[tuple[int, ir.Ir], ir.Sum] = {}
-    for node in ir_nodes((t.enumerate, t.fire)):
+    for node in (*reach.nodes(t.enumerate), *reach.nodes(t.fire)):
         if not isinstance(node, _WHOLE) or (node.place, node.multiset) in found:
             continue
         packed = net.places[node.place].packed
