@@ -6,7 +6,7 @@ import importlib.util
 import itertools
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -69,6 +69,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.skip(reason="there is no PyBullet for this Python"))
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown() -> Generator[None, object, object]:
+    """Closes the games of `helpers.played`, which hold files: a fixture of each test would take as long as the test."""
+    try:
+        return (yield)
+    finally:
+        played = sys.modules.get("helpers.played")
+        if played is not None:
+            played.close_games()
+
+
 settings.register_profile(
     "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
@@ -115,15 +126,6 @@ def nothing_kept() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as changed:
         changed.setenv(kept_answers.ANEW, "1")
         yield
-
-
-@pytest.fixture(autouse=True)
-def games_are_closed() -> Iterator[None]:
-    """Those of `helpers.played`, which hold files."""
-    yield
-    played = sys.modules.get("helpers.played")
-    if played is not None:
-        played.close_games()
 
 
 @pytest.fixture

@@ -23,6 +23,7 @@ from _pytest.pathlib import import_path
 from helpers.thorough import THOROUGH
 from pace.budget import Meter, is_exceeded
 from pace.choose import Asked, chosen, longest_first
+from pace.constants import look_in_share
 from pace.durations import Durations
 from pace.estimate import Estimate, clock
 
@@ -113,7 +114,8 @@ class Pace:
     def _import_share(self) -> None:
         """Imports a share of the files that were asked for, which no other worker begins with.
 
-        So where no module has been compiled yet, as in a new checkout, each is compiled by one of them, not by all.
+        So where no module has been compiled yet, as in a new checkout, each is compiled by one of them, not by all. The
+        same holds for the constants in them, which Hypothesis tries.
         """
         worker: dict[str, Any] = self._config.workerinput  # type: ignore[attr-defined]
         number, count = int(worker["workerid"].removeprefix("gw")), int(worker["workercount"])
@@ -128,6 +130,7 @@ class Pace:
                     root=self._config.rootpath,
                     consider_namespace_packages=self._config.getini("consider_namespace_packages"),
                 )
+        look_in_share(number, count)
 
     # ---- which tests, and in what order
 

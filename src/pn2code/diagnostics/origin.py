@@ -8,9 +8,9 @@ name the net element it came from.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import field, replace
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 
 
 @frozen

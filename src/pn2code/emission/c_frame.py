@@ -40,6 +40,8 @@ class Frame:
         self._holders = tuple(f"&m->{name}" for name in self._place_names)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
+        self._token_types = tuple(p.type for p in net.places)
+        self._global_hints = {g.name: g.hint for g in net.globals}
         self._slots = frozenset(p.index for p in net.places if p.is_slot)
         self._needs_context = frozenset(f.key for f in net.functions if f.needs_context)
         self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
@@ -49,6 +51,7 @@ class Frame:
             lambda key: self._functions[key].is_pure,
             by_table=has_places_by_table(net),
         )
+        self._has_packed = any(self._packed)
         self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
         self._has_words = (
             self._has_inlined
@@ -95,14 +98,14 @@ class Frame:
         x.multisets = self._multisets
         x.packed = self._packed
         x.slots = self._slots
-        x.global_hints = {g.name: g.hint for g in self._net.globals}
+        x.global_hints = self._global_hints
         s = NetStatements(self._types, x, scope, self._net.real_time)
         s.multisets = self._multisets
         s.timed = self._timed
         s.slots = self._slots
-        if any(self._packed):
+        if self._has_packed:
             s.number_of = self._numbers.if_whole
-        s.token_types = tuple(p.type for p in self._net.places)
+        s.token_types = self._token_types
         s.tables_of_places = self._tables
         if own:
             own.reserve(scope)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 WIDTH = 100
 """Columns of a line of generated C."""
+_LOOKED_AT = re.compile(r'"(?:[^"\\]|\\.)*"?|[][(){} ]')
+"""Literals as a whole, brackets, blanks."""
 
 
 def wrap(line: str, width: int = WIDTH) -> list[str]:
@@ -25,15 +29,13 @@ def _break_position(line: str, width: int) -> int | None:
     """The blank at which to break: the last of the least nested ones that leaves a line of `width`."""
     indent = len(line) - len(line.lstrip())
     best: tuple[int, int] | None = None  # (nesting, -position)
-    depth, in_string, i = 0, False, indent
-    while i < len(line) and (i <= width or best is None):
+    depth = 0
+    for found in _LOOKED_AT.finditer(line, indent):
+        i = found.start()
+        if i > width and best is not None:
+            break
         c = line[i]
-        if in_string:
-            i += c == "\\"
-            in_string = c != '"'
-        elif c == '"':
-            in_string = True
-        elif c in "([{":
+        if c in "([{":
             depth += 1
         elif c in ")]}":
             depth -= 1
@@ -41,7 +43,6 @@ def _break_position(line: str, width: int) -> int | None:
             cost = _cost(line[i - 1], line[i + 1 : i + 3])
             if cost is not None and (best is None or (depth + cost, -i) < best):
                 best = (depth + cost, -i)
-        i += 1
     return None if best is None else -best[1]
 
 

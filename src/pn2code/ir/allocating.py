@@ -29,6 +29,12 @@ ALLOCATING = frozenset((
 runtime's call graph."""
 
 
+MAY_ALLOCATE = frozenset(
+    {ir.Op, ir.Fill, ir.NewRef, ir.RaiseValue, ir.TakeAll, ir.PutAll, ir.MakeUnion}
+)
+"""Those that `maker` knows; all others allocate nothing."""
+
+
 def maker(node: object, definitions: Mapping[str, ir.Definition], int_bits: int) -> str:
     """The function that a piece of IR calls, if it allocates; else ""."""
     name = ""

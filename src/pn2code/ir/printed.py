@@ -18,6 +18,10 @@ def is_nil(value: object) -> bool:
     return False
 
 
+PARTLY_PRINTED = frozenset({ir.Head, ir.Tail, ir.IsNil, ir.Op})
+"""Those for which `printed_parts` may leave something out; all others are printed with all their parts."""
+
+
 def printed_parts(e: object) -> tuple[object, ...]:
     """The parts of an expression, or of whatever else of the IR, that come into the C that is printed for it."""
     match e:

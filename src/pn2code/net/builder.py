@@ -9,9 +9,8 @@ made = b.net()
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.base.unused_name import unused_name
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml.core import types

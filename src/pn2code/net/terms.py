@@ -9,8 +9,7 @@ Example: 1`(n, p) ++ 2`f n gives Term(1, pattern (n, p)), Term(2, value f n)
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from pn2code.base.frozen import replace
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.terms import (
     Apply,

@@ -21,7 +21,6 @@ import sys
 import tempfile
 from contextlib import suppress
 from functools import lru_cache
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +53,10 @@ class NoPieces(ValueError):  # noqa: N818
 @lru_cache(maxsize=64)
 def pieces(path: Path, most: int) -> tuple[Array, ...]:
     """The points of at most so many convex pieces that cover a mesh file."""
+    from importlib import (
+        metadata,  # takes as long as reading a small net, and few cells have such meshes
+    )
+
     try:
         points, triangles = read(path)
     except (OSError, NoMesh) as problem:

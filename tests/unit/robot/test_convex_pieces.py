@@ -237,6 +237,6 @@ def test_without_coacd_it_is_said_how_to_get_it(
     def missing(name: str) -> str:
         raise metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(convex_pieces.metadata, "version", missing)
+    monkeypatch.setattr(metadata, "version", missing)
     with pytest.raises(NoPieces, match="pn2code\\[hulls\\]"):
         pieces(trough(tmp_path), 5)

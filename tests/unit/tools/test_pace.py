@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from pace import budget
+from pace import budget, constants
 from pace.budget import Meter, is_exceeded
 from pace.choose import Asked, chosen, longest_first
 from pace.durations import UNKNOWN_S, Durations
@@ -185,3 +185,22 @@ def test_each_worker_begins_with_other_files(tmp_path: Path) -> None:
     )  # fmt: skip
     assert "KeyError: 'wrong'" in done.stdout and "4 passed, 1 skipped" in done.stdout, done.stdout
     assert [(tmp_path / f"gw{n}").read_text() for n in (0, 1)] == ["acbd", "bdac"]
+
+
+def test_the_constants_of_a_module_are_looked_for_by_one_worker(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which one does not depend on what else is loaded; those of tests and of other packages are not wanted."""
+    constants_ast = pytest.importorskip("hypothesis.internal.constants_ast")
+    looked: list[str] = []
+    monkeypatch.setattr(constants_ast, "constants_from_module", lambda m: looked.append(m.__name__))
+    for number in range(3):
+        constants.look_in_share(number, 3)
+    assert len(looked) == len(set(looked)) > 100
+    assert "pn2code.ml.parsing.lexer" in looked
+    assert not {"pace.plugin", "pytest", "json", __name__} & set(looked)
+    modules = [m for m in sys.modules.values() if m.__name__ in looked]
+    for number in range(3):
+        mine = constants.share(modules, number, 3)
+        assert mine == list(reversed(constants.share(reversed(modules), number, 3)))
+        assert len(mine) > len(modules) // 5

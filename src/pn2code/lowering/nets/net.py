@@ -7,8 +7,9 @@ and then there is no `NetIR`.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import TypeVar
 
 from pn2code.base.frozen import replace
@@ -28,6 +29,7 @@ from pn2code.lowering.nets.predicates import lower_predicate
 from pn2code.lowering.nets.transitions import lower_transition
 from pn2code.lowering.passes.analysis import analysed
 from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Exp
 from pn2code.ml.core.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.net.predicate import Predicate
@@ -220,15 +222,19 @@ class _Lowering:
 
     def _early(self, place: FlatPlace) -> tuple[int | float, ...]:
         """The constant delays of input arcs from a place, which decide when time goes on."""
-        found = {
-            self._program.constant(term.delay)
-            for t in self._net.transitions
-            for arc in t.arcs
-            if arc.place == place.index and arc.inscription is not None
-            for term in arc.inscription.terms
-            if term.delay is not None
-        }
+        found = {self._program.constant(delay) for delay in self._delays.get(place.index, ())}
         return tuple(sorted(value for value in found if value))
+
+    @cached_property
+    def _delays(self) -> Mapping[int, list[Exp]]:
+        """Of the arcs of each place, in order."""
+        found: dict[int, list[Exp]] = defaultdict(list)
+        for t in self._net.transitions:
+            for arc in t.arcs:
+                for term in () if arc.inscription is None else arc.inscription.terms:
+                    if term.delay is not None:
+                        found[arc.place].append(term.delay)
+        return found
 
     def _functions(self) -> tuple[ir.Function, ...]:
         """All functions, and those that decide membership of subsets: each of these may bring in others of both."""

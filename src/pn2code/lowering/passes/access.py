@@ -9,29 +9,63 @@ statement.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
-from pn2code.base.frozen import replace
+from pn2code.base.frozen import frozen, replace
 from pn2code.base.how_far import counted
 from pn2code.ir import nodes as ir
+from pn2code.ir.calls import parts_of
 from pn2code.ir.nodes import Rep
-from pn2code.ir.printed import printed_parts
+from pn2code.ir.printed import PARTLY_PRINTED, printed_parts
 from pn2code.lowering.passes.alike import has_places_by_table
 from pn2code.lowering.passes.moves import is_count, is_pair
 
 
+@frozen
+class _Places:
+    """What all programs of a net want to know of its places.
+
+    Args:
+        timed, packed, slots: of each place.
+        units: whether its tokens have no value.
+        has_tables: whether packed places are reached by their tables.
+        has_successors: of the net.
+    """
+
+    timed: tuple[bool, ...]
+    packed: tuple[bool, ...]
+    slots: tuple[bool, ...]
+    units: tuple[bool, ...]
+    has_tables: bool
+    has_successors: bool
+
+    @staticmethod
+    def of(net: ir.NetIR) -> _Places:
+        """Looked at once."""
+        return _Places(
+            tuple(p.timed for p in net.places),
+            tuple(bool(p.packed) for p in net.places),
+            tuple(p.is_slot for p in net.places),
+            tuple(p.type.rep is Rep.UNIT for p in net.places),
+            has_places_by_table(net),
+            net.has_successors,
+        )
+
+
 def with_access(net: ir.NetIR) -> ir.NetIR:
     """The net, with what this pass finds; all of how places are kept and occurrences are printed is known."""
+    places = _Places.of(net)
     transitions = counted(net.transitions, "what transitions need")
-    return replace(net, transitions=tuple(_transition(net, t) for t in transitions))
+    return replace(net, transitions=tuple(_transition(places, t) for t in transitions))
 
 
-def _transition(net: ir.NetIR, t: ir.Transition) -> ir.Transition:
+def _transition(places: _Places, t: ir.Transition) -> ir.Transition:
     if t.counts is not None:  # it has no programs
         return t
     has_lists = t.is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-    search, fire = _Program(net, t.sums), _Occurrence(net, t)
+    search, fire = _Program(places, t.sums), _Occurrence(places, t)
     search.look_at(t.enumerate)
-    lists, thresholds = _Program(net), _Program(net)
+    lists, thresholds = _Program(places), _Program(places)
     lists.look_at(t.fire)
     thresholds.look_at(t.thresholds)
     if t.is_direct:
@@ -45,23 +79,28 @@ def _transition(net: ir.NetIR, t: ir.Transition) -> ir.Transition:
     )
 
 
+_NAMING = frozenset({
+    ir.Bound, ir.Bind, ir.ForValues, ir.UnlessLegal, ir.TokenValue, ir.ForTokens, ir.UnlessAvailable, ir.UnlessHeld,
+    ir.UnlessEmpty, ir.Wanted, ir.Take, ir.Put, ir.TakeAll, ir.PutAll, ir.Threshold, ir.Reset,
+})  # fmt: skip
+"""Those that `_Program._parts` looks at; of all others only the parts name something."""
+
+
 class _Program:
     """What is found in a program that is printed statement by statement.
 
     Args:
-        net: whose.
+        places: of its net.
         sums: that it calls where it can.
     """
 
-    def __init__(self, net: ir.NetIR, sums: tuple[ir.Sum, ...] = ()) -> None:
-        self._places = net.places
-        self._timed = tuple(p.timed for p in net.places)
+    def __init__(self, places: _Places, sums: tuple[ir.Sum, ...] = ()) -> None:
+        self._places = places
         self._sum_numbers = {(s.place, s.multiset): number for number, s in enumerate(sums)}
         self._holders: set[int] = set()
         self._tables: set[int] = set()
         self._sums: set[int] = set()
         self._binding = False
-        self._has_tables = has_places_by_table(net)
 
     def found(self) -> ir.Access:
         """All of it."""
@@ -74,13 +113,16 @@ class _Program:
 
     def look_at(self, item: object) -> None:
         """Note what is named by a piece of IR, or by a tuple of them."""
-        waiting = [item]
+        waiting: list[Any] = [item]
         while waiting:
             node = waiting.pop()
-            if isinstance(node, tuple):
+            kind = node.__class__
+            if kind is tuple:
                 waiting += node
-                continue
-            waiting += self._parts(node)
+            elif kind in _NAMING:
+                waiting += self._parts(node)
+            else:
+                waiting += printed_parts(node) if kind in PARTLY_PRINTED else parts_of(node)
 
     def _parts(self, node: object) -> Iterable[object]:
         """Note what a node names itself, and give those of its parts that are printed."""
@@ -94,7 +136,7 @@ class _Program:
                     self._hold(place)
             case ir.UnlessHeld(place=place):
                 self._name(place)
-                if self._is_slot(place) and self._places[place].type.rep is Rep.UNIT:
+                if self._is_slot(place) and self._places.units[place]:
                     return ()
             case ir.UnlessEmpty(place=place):
                 self._name(place)
@@ -118,26 +160,26 @@ class _Program:
 
     def _is_pair(self, takes: tuple[ir.Stmt, ...]) -> bool:
         has_slot = any(isinstance(s, ir.Take) and self._is_slot(s.place) for s in takes)
-        return not has_slot and is_pair(takes, self._timed)
+        return not has_slot and is_pair(takes, self._places.timed)
 
     def _is_slot(self, place: int) -> bool:
-        return self._places[place].is_slot
+        return self._places.slots[place]
 
     def _name(self, place: int) -> None:
         """By the table where the place is timed, or else directly."""
-        if self._timed[place]:
+        if self._places.timed[place]:
             self._hand_over(place)
         else:
             self._hold(place)
 
     def _hold(self, place: int) -> None:
-        if not self._places[place].packed:
+        if not self._places.packed[place]:
             self._holders.add(place)
-        elif self._has_tables:
+        elif self._places.has_tables:
             self._tables.add(place)
 
     def _hand_over(self, place: int) -> None:
-        if self._has_tables or not self._places[place].packed:
+        if self._places.has_tables or not self._places.packed[place]:
             self._tables.add(place)
 
     def _call_sum(self, s: ir.TakeAll | ir.PutAll) -> None:
@@ -150,11 +192,11 @@ class _Program:
 class _Occurrence(_Program):
     """What is found in an occurrence that is printed with the inline functions of its places; see `c_firing`."""
 
-    def __init__(self, net: ir.NetIR, t: ir.Transition) -> None:
-        super().__init__(net, t.sums)
+    def __init__(self, places: _Places, t: ir.Transition) -> None:
+        super().__init__(places, t.sums)
         self._fire = t.fire
         self._staying = {id(t.fire[i]) for pair in t.staying for i in pair}
-        self._puts_back = not net.has_successors
+        self._puts_back = not places.has_successors
         taken = [s for s in t.fire if isinstance(s, ir.Take) and id(s) not in self._staying]
         self._emptied = {s.place for s in taken if self._is_slot(s.place)}
         puts = [s for s in t.fire if isinstance(s, ir.Put) and id(s) not in self._staying]

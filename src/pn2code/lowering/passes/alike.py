@@ -9,7 +9,10 @@ Transitions with sums are never alike: a sum lies as the counters of its place d
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
@@ -77,7 +80,7 @@ class _Shape:
         return None if any(self._all[p].packed is None for p in self.places) else parts
 
     def _walk(self, items: Iterable[object]) -> Iterator[object]:
-        waiting = [*items]
+        waiting: list[Any] = [*items]
         while waiting:
             item = waiting.pop()
             if isinstance(item, tuple):
@@ -85,22 +88,14 @@ class _Shape:
                 waiting += item
             elif isinstance(item, ir.Local):
                 yield self._locals.setdefault(item.uid, len(self._locals)), item.type
-            elif fields := _fields(item):
+            elif kept := _kept(item.__class__):
                 yield type(item)
-                waiting += (getattr(item, f) for f in fields if not self._is_left_out(item, f))
+                waiting += kept(item)
                 place = getattr(item, "place", None)
                 if place is not None:
                     yield self._place(place)
             else:  # -0.0 is equal to 0.0, and not the same
                 yield type(item), repr(item) if isinstance(item, float) else item
-
-    @staticmethod
-    def _is_left_out(item: object, field: str) -> bool:
-        return (
-            field in ("place", "note")
-            or isinstance(item, ir.Note)
-            or (field in _OF_HOSTS and isinstance(item, Effects))
-        )
 
     def _place(self, place: int) -> object:
         """The number of a place in this transition, and what of it stands in the code."""
@@ -115,3 +110,19 @@ class _Shape:
 
 def _fields(item: object) -> tuple[str, ...]:
     return tuple(getattr(item, "__dataclass_fields__", ()))
+
+
+@cache
+def _kept(kind: type) -> Callable[[Any], tuple[object, ...]] | None:
+    """What gives the fields of a node that are not left out, in order; None for what is no node."""
+    fields: tuple[str, ...] = tuple(getattr(kind, "__dataclass_fields__", ()))
+    if not fields:
+        return None
+    out = {"place", "note", *(_OF_HOSTS if kind is Effects else ())}
+    names = [f for f in fields if f not in out and kind is not ir.Note]
+    match names:
+        case []:
+            return lambda _item: ()
+        case [name]:
+            return lambda item: (getattr(item, name),)
+    return attrgetter(*names)

@@ -10,6 +10,8 @@ from pn2code.ir.calls import ir_nodes
 from pn2code.lowering.passes.moves import is_count
 from pn2code.lowering.passes.reach import Reach
 
+_WHOLE = (ir.TakeAll, ir.PutAll)
+
 
 def with_direct(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     """The net, with what this pass finds; `sums` are known."""
@@ -22,16 +24,16 @@ def with_direct(net: ir.NetIR, reach: Reach) -> ir.NetIR:
 def _is_direct(net: ir.NetIR, t: ir.Transition, reach: Reach) -> bool:
     """Whether the moves are known one by one or as `sums`; what is taken must be what was found."""
     sums = {(s.place, s.multiset) for s in t.sums}
-    nodes = list(ir_nodes(t.fire))
+    nodes = reach.nodes(t.fire)
     takes = [n for n in nodes if isinstance(n, ir.Take)]
     puts = [n for n in nodes if isinstance(n, ir.Put)]
     moved = {n.place for n in takes} | {n.place for n in puts}
     top = [s for s in t.fire if isinstance(s, ir.Take)]
-    whole = [n for n in nodes if isinstance(n, ir.TakeAll | ir.PutAll)]
+    whole = [n for n in nodes if isinstance(n, _WHOLE)]
     return (
         not any(isinstance(n, ir.Reset) for n in nodes)
         and all((n.place, n.multiset) in sums for n in whole)
-        and len(whole) == sum(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
+        and len(whole) == sum(isinstance(s, _WHOLE) for s in t.fire)
         and not any(net.places[place].timed for place in moved)
         and len(takes) == len(top)
         and all(is_count(n.count) for n in takes)

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
@@ -21,17 +23,19 @@ _READ = (*_EXAMINED, ir.Reset)
 
 def with_effects(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     """The net, with what this pass finds; `staying` is known."""
-    searches = [list(ir_nodes(t.enumerate)) for t in net.transitions]
+    searches = [reach.nodes(t.enumerate) for t in net.transitions]
     examined = [_places(nodes, _EXAMINED) for nodes in searches]
     volatile = [not reach.is_pure(deciding(nodes)) for nodes in searches]
     roots = _roots(net, reach)
     impure = reach.impure()
 
-    def effects(t: ir.Transition, search: list[object]) -> Effects:
-        nodes = list(ir_nodes(t.fire))
+    def effects(t: ir.Transition, program: tuple[object, ...]) -> Effects:
+        nodes = reach.nodes(t.fire)
         changed = _changed(net, t, nodes, reach)
-        read = tuple(sorted(_places(search, _READ) | _places(nodes, _READ)))
-        search, fire, thresholds = (deciding(x) for x in (search, nodes, ir_nodes(t.thresholds)))
+        read = tuple(sorted(_places(program, _READ) | _places(nodes, _READ)))
+        search, fire, thresholds = (
+            deciding(x) for x in (program, nodes, reach.nodes(t.thresholds))
+        )
         search_writes = reach.assigns(search)
         return Effects(
             affected=tuple(
@@ -60,7 +64,9 @@ def with_effects(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     )
 
 
-def _changed(net: ir.NetIR, t: ir.Transition, fire: list[object], reach: Reach) -> frozenset[int]:
+def _changed(
+    net: ir.NetIR, t: ir.Transition, fire: tuple[object, ...], reach: Reach
+) -> frozenset[int]:
     """The places whose tokens are others after the occurrence: what stays where it is does not count."""
     staying = {
         id(s)
@@ -80,8 +86,8 @@ def _roots(net: ir.NetIR, reach: Reach) -> tuple[str, ...]:
     Those that transitions assign; and if they assign any, or the contents of any cell, all through which cells are
     reached, and all of which the address is known to others.
     """
-    programs = tuple((t.enumerate, t.fire, t.thresholds) for t in net.transitions)
-    nodes = reach.all_nodes(ir_nodes(programs))
+    programs = (p for t in net.transitions for p in (t.enumerate, t.fire, t.thresholds))
+    nodes = reach.all_nodes(node for program in programs for node in reach.nodes(program))
     if not any(map(is_assignment, nodes)):
         return ()
     assigned = {n.name for n in nodes if isinstance(n, ir.SetGlobal) and n.is_reference}
@@ -93,5 +99,5 @@ def _roots(net: ir.NetIR, reach: Reach) -> tuple[str, ...]:
     )
 
 
-def _places(nodes: list[object], kinds: tuple[type, ...]) -> frozenset[int]:
+def _places(nodes: Iterable[object], kinds: tuple[type, ...]) -> frozenset[int]:
     return frozenset(n.place for n in nodes if isinstance(n, kinds))  # type: ignore[attr-defined]

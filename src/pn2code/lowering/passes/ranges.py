@@ -29,6 +29,12 @@ EXACT = {"Int.+": "exact.+", "Int.-": "exact.-", "Int.*": "exact.*", "Int.~": "e
 DIVISIONS = {"Int.div": "exact.div", "Int.mod": "exact.mod"}
 """Those that are the same for what is not negative, divided by what is positive."""
 
+_OVERFLOWING = frozenset({*EXACT, *DIVISIONS})
+
+
+def _may_overflow(node: object) -> bool:
+    return node.__class__ is ir.Op and node.name in _OVERFLOWING
+
 
 def with_ranges(net: ir.NetIR) -> ir.NetIR:
     """The net, with what this pass finds; `constant` of the globals is known."""
@@ -74,14 +80,17 @@ class Ranges:
 
     def rewritten(self, node: Any) -> Any:
         """Statements, or a value, with operations that cannot overflow."""
+        return self._rewritten(node) if any(map(_may_overflow, ir_nodes(node))) else node
+
+    def _rewritten(self, node: Any) -> Any:
         if isinstance(node, tuple):
-            return tuple(map(self.rewritten, node))
+            return tuple(map(self._rewritten, node))
         if not parts_of(node):
             return node
         changed = {}
         for name in _names(node.__class__):
             old = getattr(node, name)
-            new = self.rewritten(old)
+            new = self._rewritten(old)
             if new is not old and new != old:
                 changed[name] = new
         if changed:

@@ -19,6 +19,15 @@ class Reach:
         self._calls = {f.key: called(f.body) for f in net.functions}
         self._reaching: dict[Callable[[object], bool], set[str]] = {}
         self._references = {g.name for g in net.globals if g.is_reference}
+        self._looked_at: dict[int, tuple[object, tuple[object, ...]]] = {}
+        """by id, with what has it"""
+
+    def nodes(self, program: tuple[ir.Stmt, ...]) -> tuple[object, ...]:
+        """All pieces of a program of the net, which several passes ask for."""
+        found = self._looked_at.get(id(program))
+        if found is None:
+            found = self._looked_at[id(program)] = program, tuple(ir_nodes(program))
+        return found[1]
 
     def is_pure(self, nodes: Iterable[object]) -> bool:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""

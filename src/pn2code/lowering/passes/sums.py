@@ -21,6 +21,10 @@ _MOST_WORDS = 1 << 14
 """Of all sums of one arc."""
 
 
+_WHOLE = (ir.TakeAll, ir.PutAll)
+_LOOKING = (ir.Use, ir.TokenValue)
+
+
 def with_sums(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     """The net, with what this pass finds."""
     descriptors = {d.name: d for d in net.descriptors}
@@ -38,8 +42,8 @@ def _find(
 ) -> dict[tuple[int, ir.Ir], ir.Sum]:
     """The sums of a transition by place and multi-set."""
     found: dict[tuple[int, ir.Ir], ir.Sum] = {}
-    for node in ir_nodes((t.enumerate, t.fire)):
-        if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
+    for node in (*reach.nodes(t.enumerate), *reach.nodes(t.fire)):
+        if not isinstance(node, _WHOLE) or (node.place, node.multiset) in found:
             continue
         packed = net.places[node.place].packed
         if packed is None or not _is_function_of_binding(node.multiset, reach):
@@ -57,7 +61,7 @@ def _find(
 def _is_function_of_binding(multiset: ir.Ir, reach: Reach) -> bool:
     nodes = list(ir_nodes(multiset))
     return (
-        not any(isinstance(n, ir.Use | ir.TokenValue) for n in nodes)
+        not any(isinstance(n, _LOOKING) for n in nodes)
         and reach.is_pure(nodes)
         and not reach.reaches(nodes, _is_now)
     )

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from pn2code.base.frozen import replace
 from pn2code.ir import nodes as ir
-from pn2code.ir.allocating import maker
+from pn2code.ir.allocating import MAY_ALLOCATE, maker
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.operations import op_needs_table
 from pn2code.ir.types import Rep, closure, holds_reference
@@ -127,14 +127,17 @@ class _Search:
         found: set[str] = set()
         for node in ir_nodes(body):
             table = getattr(node, "table", "")
-            is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
-            if isinstance(table, str) and table and is_looked_at:
+            op = node if isinstance(node, ir.Op) else None
+            if table and isinstance(table, str) and (op is None or op_needs_table(op)):
                 found.add(table)
-            if isinstance(node, ir.Op) and node.name == "Colset.all":
-                found.add(f"type {node.type}")
-            if isinstance(node, ir.Op) and node.name.startswith(_FILES):
-                self._files.add(id(body))
-            if made := maker(node, self._definitions, self._net.int_bits):
+            if op is not None:
+                if op.name == "Colset.all":
+                    found.add(f"type {op.type}")
+                if op.name.startswith(_FILES):
+                    self._files.add(id(body))
+            if node.__class__ in MAY_ALLOCATE and (
+                made := maker(node, self._definitions, self._net.int_bits)
+            ):
                 self._makers.add(made)
         self._mentioned[id(body)] = frozenset(found)
         return self._mentioned[id(body)]
