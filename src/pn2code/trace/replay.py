@@ -8,7 +8,8 @@ are compared exactly. Lines with an `event` are passed over.
 
 Time: the simulators (`by` is `simulate` or `reference`) write model times, and the clock must do exactly what the
 rules say. All others write seconds of the run; there the clock follows the trace (`t` divided by `time_unit`), and
-tokens must be available by then. Their priorities hold among the transitions of one party (`Parties`).
+tokens must be available by then. Their priorities hold among the transitions of one party (`Parties`). A run of a cell
+that `verify` has found is in model time: its clock follows the trace too, unit by unit where something is waited for.
 
 What else a trace claims is looked at as well: the net's digest, the element that each step names, the numbers and times
 of steps, who made them, why the run ended, and in which final places, and where a lasso goes back to.
@@ -54,7 +55,8 @@ from pn2code.trace.lines import (
     unknown_variable,
 )
 from pn2code.trace.markings import ALL, Markings, claimed_loop
-from pn2code.trace.parties import SIMULATORS, Parties
+from pn2code.trace.model_time import model_time_problem
+from pn2code.trace.parties import SIMULATORS, VERIFY, Parties
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
 
@@ -152,11 +154,13 @@ class Rules:
         priorities: whether no transition of higher priority may be enabled, whoever's it is; else none of the same
             party.
         time_unit: seconds in a unit of model time, where the clock follows `t`.
+        unit_by_unit: `t` is model time, which goes on only while something is waited for; else it is that of clocks.
     """
 
     own_clock: bool
     priorities: bool
     time_unit: float = 1.0
+    unit_by_unit: bool = False
 
 
 def replay(
@@ -295,6 +299,8 @@ def replay_lines(
             elif line.get("event") == "end":
                 assert rules is not None and markings is not None
                 ended = str(line.get("why", ""))
+                if rules.unit_by_unit:
+                    _refuse(model_time_problem(game, line.get("t")))
                 ending = Ending(by, rules.own_clock, who, markings, may_fail_outside)
                 _refuse(end_problem(game, line, ending) or time_problem(line, latest))
                 ended_at = line.get("t") if rules.own_clock else None
@@ -311,6 +317,9 @@ def replay_lines(
                 if repeated is not None:
                     repeated.learn(text, line, occurred)
             else:
+                assert rules is not None
+                if is_whole and (rules.own_clock or rules.unit_by_unit):
+                    raise _Wrong(f"`{by}` writes no notes")
                 by_hand += is_by_hand(line)
                 if notes is not None:
                     _refuse(notes.note(line) or time_problem(line, latest))
@@ -333,7 +342,12 @@ def _refuse(problem: str | None) -> None:
 
 def _rules_for(by: str, time_unit: float) -> Rules:
     simulator = by in SIMULATORS
-    return Rules(own_clock=simulator, priorities=simulator, time_unit=time_unit)
+    return Rules(
+        own_clock=simulator,
+        priorities=simulator,
+        time_unit=1.0 if by == VERIFY else time_unit,
+        unit_by_unit=by == VERIFY,
+    )
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -477,7 +491,8 @@ def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
 def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
     t = line.get("t")
     if not game.net.timed:
-        if rules.own_clock and is_number(t) and t != game.marking.time:
+        is_model_time = rules.own_clock or rules.unit_by_unit
+        if is_model_time and is_number(t) and t != game.marking.time:
             raise _Wrong(f"it says time {t}, but without time the clock shows {game.marking.time}")
         return
     if isinstance(t, bool) or not isinstance(t, int | float):
@@ -487,6 +502,10 @@ def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
             game.marking = game.advance_time(game.marking)
         if t != game.marking.time:
             raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
+        return
+    if rules.unit_by_unit:
+        _refuse(model_time_problem(game, t))
+        game.set_time(t)
         return
     time = _model_time(game, t, rules)
     if time < game.marking.time - (0 if game.net.real_time else 1):
