@@ -55,7 +55,7 @@ from pn2code.trace.lines import (
     unknown_variable,
 )
 from pn2code.trace.markings import ALL, Markings, claimed_loop
-from pn2code.trace.model_time import model_time_problem
+from pn2code.trace.model_time import ModelTime
 from pn2code.trace.parties import SIMULATORS, VERIFY, Parties
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
@@ -154,13 +154,11 @@ class Rules:
         priorities: whether no transition of higher priority may be enabled, whoever's it is; else none of the same
             party.
         time_unit: seconds in a unit of model time, where the clock follows `t`.
-        unit_by_unit: `t` is model time, which goes on only while something is waited for; else it is that of clocks.
     """
 
     own_clock: bool
     priorities: bool
     time_unit: float = 1.0
-    unit_by_unit: bool = False
 
 
 def replay(
@@ -257,6 +255,7 @@ def replay_lines(
     by_hand = 0
     ended_at: float | None = None
     repeated: Repeated | None = None
+    clock: ModelTime | None = None
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -287,6 +286,7 @@ def replay_lines(
                 )
                 given = tuple(_given(game, initial))
                 rules = rules or _rules_for(by, time_unit)
+                clock = ModelTime(game, who) if by == VERIFY and not rules.own_clock else None
                 if notes is None:
                     repeated = Repeated(game, rules.priorities, who)
                 else:
@@ -299,15 +299,14 @@ def replay_lines(
             elif line.get("event") == "end":
                 assert rules is not None and markings is not None
                 ended = str(line.get("why", ""))
-                if rules.unit_by_unit:
-                    _refuse(model_time_problem(game, line.get("t")))
+                _refuse(clock.problem(line.get("t")) if clock is not None else None)
                 ending = Ending(by, rules.own_clock, who, markings, may_fail_outside)
                 _refuse(end_problem(game, line, ending) or time_problem(line, latest))
                 ended_at = line.get("t") if rules.own_clock else None
                 _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
                 assert rules is not None and markings is not None
-                occurred = _step(game, line, rules, names, who, by, notes)
+                occurred = _step(game, line, rules, names, who, by, notes, clock)
                 if watch is not None:
                     watch(game, occurred, line)
                 _refuse(order_problem(line, steps + 1, latest))
@@ -318,7 +317,7 @@ def replay_lines(
                     repeated.learn(text, line, occurred)
             else:
                 assert rules is not None
-                if is_whole and (rules.own_clock or rules.unit_by_unit):
+                if is_whole and (rules.own_clock or clock is not None):
                     raise _Wrong(f"`{by}` writes no notes")
                 by_hand += is_by_hand(line)
                 if notes is not None:
@@ -342,12 +341,7 @@ def _refuse(problem: str | None) -> None:
 
 def _rules_for(by: str, time_unit: float) -> Rules:
     simulator = by in SIMULATORS
-    return Rules(
-        own_clock=simulator,
-        priorities=simulator,
-        time_unit=1.0 if by == VERIFY else time_unit,
-        unit_by_unit=by == VERIFY,
-    )
+    return Rules(own_clock=simulator, priorities=simulator, time_unit=time_unit)
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -412,6 +406,7 @@ def _step(
     parties: Parties,
     by: str,
     notes: Notes | None,
+    clock: ModelTime | None,
 ) -> BindingElement:
     """Repeats one occurrence, and gives it with all its outputs; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
@@ -420,7 +415,7 @@ def _step(
     _refuse(origin_problem(line, t) or parties.not_by(by, t.index))
     given = _binding(t, line.get("binding", {}))
     element = BindingElement.make(t, {s: x for s, x in given.items() if s not in _outputs(t)})
-    _set_clock(game, line, rules)
+    _set_clock(game, line, rules, clock)
     why = game.why_disabled(game.marking, element, priorities=rules.priorities)
     if why is not None:
         raise _Wrong(f"not enabled: {why}")
@@ -437,6 +432,8 @@ def _step(
         _refuse(notes.step(line, t))
     game.marking = marking
     game.steps += 1
+    if clock is not None:
+        clock.occurred(t.index)
     return occurred
 
 
@@ -488,10 +485,10 @@ def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
     return found
 
 
-def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
+def _set_clock(game: Game, line: dict[str, Any], rules: Rules, clock: ModelTime | None) -> None:
     t = line.get("t")
     if not game.net.timed:
-        is_model_time = rules.own_clock or rules.unit_by_unit
+        is_model_time = rules.own_clock or clock is not None
         if is_model_time and is_number(t) and t != game.marking.time:
             raise _Wrong(f"it says time {t}, but without time the clock shows {game.marking.time}")
         return
@@ -503,8 +500,8 @@ def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
         if t != game.marking.time:
             raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
         return
-    if rules.unit_by_unit:
-        _refuse(model_time_problem(game, t))
+    if clock is not None:
+        _refuse(clock.problem(t))
         game.set_time(t)
         return
     time = _model_time(game, t, rules)

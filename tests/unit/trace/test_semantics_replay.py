@@ -379,6 +379,43 @@ def test_the_clock_of_a_cell_goes_on_while_something_is_waited_for(
     assert why in result.why if why else result.ok, result.why
 
 
+CYCLE = """
+    net Cycle
+      standard
+      colset UN = unit timed;
+      page Top
+        place P : UN = 1`()@2
+        place R : UN = 1`()@9
+        place Q
+        trans Begin
+          in P : ()
+          out Q : ()
+        trans Go
+          in Q : ()
+"""
+
+
+@pytest.mark.parametrize(
+    ("owner", "messages", "t", "ok"),
+    [
+        ((0, 0), (), 2, True),
+        ((0, 0), (), 3, False),  # it would not have rested before
+        ((0, 0), (2,), 3, True),  # it had not seen the message
+        ((0, 1), (2,), 3, True),  # the other one may be slow
+    ],
+)
+def test_no_time_goes_by_while_the_supervisor_fires(
+    owner: tuple[int, int], messages: tuple[int, ...], t: int, ok: bool
+) -> None:
+    net = flat(CYCLE)
+    head, first, second, _ = trace(Game(net))
+    told = [changed(head, by="verify"), first, changed(second, t=t)]
+    who = Parties(("supervisor", "r"), owner, frozenset(messages), (), frozenset())
+    result = replay_lines(told, net, parties=who)
+    assert result.ok is ok
+    assert ok or "in its cycle at 2 the supervisor fires `Top.Go` as well" in result.why
+
+
 @pytest.mark.parametrize("t", [1, -1, 0.5, 10**400])
 def test_a_run_of_an_untimed_cell_has_no_time(net: FlatNet, t: float) -> None:
     head, first, *_ = lines(net)
