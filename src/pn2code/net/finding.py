@@ -28,6 +28,7 @@ class Instance:
         index: in `FlatNet.places` or `FlatNet.transitions`.
         path: as in traces; of a member of a merged place, where that member stands.
         full: `Page'Name` as the engine writes it, another one for each element of a page.
+        drawn: the path with the names as they are drawn; those of traces differ where two elements have one.
     """
 
     element: str
@@ -35,6 +36,7 @@ class Instance:
     index: int
     path: str
     full: str
+    drawn: str
 
 
 @frozen
@@ -50,7 +52,12 @@ class _Element:
 class Finder:
     """The places, or the transitions, of a net by what users call them."""
 
-    def __init__(self, elements: Iterable[_Element], paths: Sequence[tuple[str, str]]) -> None:
+    def __init__(
+        self,
+        elements: Iterable[_Element],
+        paths: Sequence[tuple[str, str]],
+        sets: Sequence[tuple[str, int]] = (),
+    ) -> None:
         self._own = paths
         self._all: list[Instance] = []
         self._by_name: dict[str, list[Instance]] = {}
@@ -64,6 +71,8 @@ class Finder:
                     self.bare[name].append(e.instance.full)
         self.paths = _unique(self._all) | {path: index for index, (path, _) in enumerate(paths)}
         """Those of traces, and those of the ports and the members of fusion sets where only one place has it."""
+        self.doubtful = _doubtful([*((x.drawn, x.index) for x in self._all), *sets])
+        """Paths that several have as they are drawn (`B.P` on page `A`, and `P` on page `B` below it)."""
 
     @staticmethod
     def of_places(net: FlatNet) -> Finder:
@@ -78,6 +87,7 @@ class Finder:
                         p.place,
                         _path(net, p),
                         engine.place_instance(p).rpartition(" ")[0],
+                        _drawn(p.instance, p.name),
                     ),
                     p.page,
                     p.name,
@@ -86,6 +96,7 @@ class Finder:
                 for p in net.place_instances
             ),
             [(p.name, p.short) for p in net.places],
+            [(f"Fusion.{f.name}", f.place) for f in net.fusions if f.place >= 0],
         )
 
     @staticmethod
@@ -101,6 +112,7 @@ class Finder:
                         t.index,
                         t.name,
                         engine.transition(t.index).rpartition(" ")[0],
+                        _drawn(t.instance, t.short),
                     ),
                     t.page,
                     t.short,
@@ -120,6 +132,13 @@ class Finder:
         """All that may be meant by `Page'Name`, or by a name alone."""
         return self._by_name.get(text, ())
 
+    def drawn(self, path: str) -> list[Instance]:
+        """One for each of those that have this path as they are drawn."""
+        found = {x.index: x for x in reversed(self._all) if x.drawn == path}
+        for index in self.doubtful.get(path, ()):
+            found.setdefault(index, next(x for x in self._all if x.index == index))
+        return list(found.values())
+
     def surely(self, instance: Instance) -> str:
         """A name that only this element has; its path in quotes where there is no better one."""
         page = instance.full.partition("'")[0]
@@ -133,9 +152,23 @@ class Finder:
 
         Names of ports, and of members of fusion sets, count where nothing else has the name.
         """
+        if text in self.doubtful:
+            return list(self.doubtful[text])
         if text in self.paths:
             return [self.paths[text]]
         own = [i for i, (path, short) in enumerate(self._own) if text == short or _ends(path, text)]
+        if own:
+            own = sorted(
+                {
+                    *own,
+                    *(
+                        i
+                        for path, found in self.doubtful.items()
+                        if _ends(path, text)
+                        for i in found
+                    ),
+                }
+            )
         return own or sorted({x.index for x in self._all if _ends(x.path, text)})
 
 
@@ -144,6 +177,17 @@ def _unique(instances: Iterable[Instance]) -> dict[str, int]:
     for x in instances:
         found.setdefault(x.path, set()).add(x.index)
     return {path: min(meant) for path, meant in found.items() if len(meant) == 1}
+
+
+def _doubtful(drawn: Iterable[tuple[str, int]]) -> dict[str, tuple[int, ...]]:
+    found: dict[str, set[int]] = {}
+    for path, index in drawn:
+        found.setdefault(path, set()).add(index)
+    return {path: tuple(sorted(meant)) for path, meant in found.items() if len(meant) > 1}
+
+
+def _drawn(instance: str, name: str) -> str:
+    return f"{instance.replace('/', '.')}.{name}"
 
 
 def _ends(path: str, text: str) -> bool:

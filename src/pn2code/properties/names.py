@@ -55,6 +55,9 @@ class Names:
 
     def _find(self, what: What, name: Name) -> int | None:
         finder = self._finders[what]
+        if name.quoted and name.text in finder.doubtful:
+            self._several(what, name, finder.drawn(name.text))
+            return None
         if name.quoted and name.text in finder.paths:
             return finder.paths[name.text]
         meant = finder.named(name.text)

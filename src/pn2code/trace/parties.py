@@ -82,6 +82,15 @@ class Parties:
             return None
         return f"the trace is by `{by}`, but `{self.names[self.owner[transition]]}` runs this transition"
 
+    def certain(self, net: FlatNet) -> Sequence[FlatTransition]:
+        """The supervisor's transitions that need no message: it fires them in the cycle in which they are enabled."""
+        if not self.is_known or not self.is_cell:
+            return []
+        return [t for t in net.transitions if self.owner[t.index] == 0 and not self._looks(t)]
+
+    def _looks(self, t: FlatTransition) -> bool:
+        return any(a.place in self.messages and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+
     def rivals(self, net: FlatNet, transition: int) -> Sequence[FlatTransition]:
         """The transitions that the same party would have preferred, had they been enabled.
 
@@ -95,5 +104,5 @@ class Parties:
             for t in net.transitions
             if t.priority < own.priority
             and self.owner[t.index] == self.owner[transition]
-            and not any(a.place in self.messages and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+            and not self._looks(t)
         ]

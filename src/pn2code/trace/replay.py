@@ -8,7 +8,8 @@ are compared exactly. Lines with an `event` are passed over.
 
 Time: the simulators (`by` is `simulate` or `reference`) write model times, and the clock must do exactly what the
 rules say. All others write seconds of the run; there the clock follows the trace (`t` divided by `time_unit`), and
-tokens must be available by then. Their priorities hold among the transitions of one party (`Parties`).
+tokens must be available by then. Their priorities hold among the transitions of one party (`Parties`). A run of a cell
+that `verify` has found is in model time: its clock follows the trace too, unit by unit where something is waited for.
 
 What else a trace claims is looked at as well: the net's digest, the element that each step names, the numbers and times
 of steps, who made them, why the run ended, and in which final places, and where a lasso goes back to.
@@ -54,7 +55,8 @@ from pn2code.trace.lines import (
     unknown_variable,
 )
 from pn2code.trace.markings import ALL, Markings, claimed_loop
-from pn2code.trace.parties import SIMULATORS, Parties
+from pn2code.trace.model_time import ModelTime
+from pn2code.trace.parties import SIMULATORS, VERIFY, Parties
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
 from pn2code.trace.whole_lines import whole_lines
@@ -255,6 +257,7 @@ def replay_lines(
     by_hand = 0
     ended_at: float | None = None
     repeated: Repeated | None = None
+    clock: ModelTime | None = None
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -285,6 +288,7 @@ def replay_lines(
                 )
                 given = tuple(_given(game, initial))
                 rules = rules or _rules_for(by, time_unit)
+                clock = ModelTime(game, who) if by == VERIFY and not rules.own_clock else None
                 if notes is None:
                     repeated = Repeated(game, rules.priorities, who)
                 else:
@@ -297,13 +301,14 @@ def replay_lines(
             elif line.get("event") == "end":
                 assert rules is not None and markings is not None
                 ended = str(line.get("why", ""))
+                _refuse(clock.problem(line.get("t")) if clock is not None else None)
                 ending = Ending(by, rules.own_clock, who, markings, may_fail_outside)
                 _refuse(end_problem(game, line, ending) or time_problem(line, latest))
                 ended_at = line.get("t") if rules.own_clock else None
                 _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
                 assert rules is not None and markings is not None
-                occurred = _step(game, line, rules, names, who, by, notes)
+                occurred = _step(game, line, rules, names, who, by, notes, clock)
                 if watch is not None:
                     watch(game, occurred, line)
                 _refuse(order_problem(line, steps + 1, latest))
@@ -313,6 +318,9 @@ def replay_lines(
                 if repeated is not None:
                     repeated.learn(text, line, occurred)
             else:
+                assert rules is not None
+                if is_whole and (rules.own_clock or clock is not None):
+                    raise _Wrong(f"`{by}` writes no notes")
                 by_hand += is_by_hand(line)
                 if notes is not None:
                     _refuse(notes.note(line) or time_problem(line, latest))
@@ -400,6 +408,7 @@ def _step(
     parties: Parties,
     by: str,
     notes: Notes | None,
+    clock: ModelTime | None,
 ) -> BindingElement:
     """Repeats one occurrence, and gives it with all its outputs; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
@@ -408,7 +417,7 @@ def _step(
     _refuse(origin_problem(line, t) or parties.not_by(by, t.index))
     given = _binding(t, line.get("binding", {}))
     element = BindingElement.make(t, {s: x for s, x in given.items() if s not in _outputs(t)})
-    _set_clock(game, line, rules)
+    _set_clock(game, line, rules, clock)
     why = game.why_disabled(game.marking, element, priorities=rules.priorities)
     if why is not None:
         raise _Wrong(f"not enabled: {why}")
@@ -425,6 +434,8 @@ def _step(
         _refuse(notes.step(line, t))
     game.marking = marking
     game.steps += 1
+    if clock is not None:
+        clock.occurred(t.index)
     return occurred
 
 
@@ -476,10 +487,11 @@ def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
     return found
 
 
-def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
+def _set_clock(game: Game, line: dict[str, Any], rules: Rules, clock: ModelTime | None) -> None:
     t = line.get("t")
     if not game.net.timed:
-        if rules.own_clock and is_number(t) and t != game.marking.time:
+        is_model_time = rules.own_clock or clock is not None
+        if is_model_time and is_number(t) and t != game.marking.time:
             raise _Wrong(f"it says time {t}, but without time the clock shows {game.marking.time}")
         return
     if isinstance(t, bool) or not isinstance(t, int | float):
@@ -489,6 +501,10 @@ def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
             game.marking = game.advance_time(game.marking)
         if t != game.marking.time:
             raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
+        return
+    if clock is not None:
+        _refuse(clock.problem(t))
+        game.set_time(t)
         return
     time = _model_time(game, t, rules)
     if time < game.marking.time - (0 if game.net.real_time else 1):

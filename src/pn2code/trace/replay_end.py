@@ -18,6 +18,7 @@ from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.trace.lines import is_number
 from pn2code.trace.markings import Markings
+from pn2code.trace.model_time import stamps
 from pn2code.trace.parties import EVIDENCE, RUN, VERIFY, Parties
 
 FINISHED = "finished"
@@ -241,20 +242,14 @@ def _comes_back(first: Marking, last: Marking, end: object) -> bool:
     """
     now = end if is_number(end) and end > last.time else last.time
     last = replace(last, time=now)
-    ahead = min((s - now for s in _stamps(last) if s > now), default=None)
-    stamps = _stamps(first)
-    begun = [s - ahead for s in stamps] if ahead is not None else [max([first.time, *stamps])]
+    ahead = min((s - now for s in stamps(last) if s > now), default=None)
+    of_first = stamps(first)
+    begun = [s - ahead for s in of_first] if ahead is not None else [max([first.time, *of_first])]
     return any(
         _relative(replace(first, time=t)) == _relative(last)
         for t in [first.time, *begun]
         if first.time <= t <= now
     )
-
-
-def _stamps(marking: Marking) -> list[int | float]:
-    """Of all tokens, each once."""
-    timed = (tokens for tokens in marking.places if isinstance(tokens, TimedMultiSet))
-    return sorted({t.stamp for tokens in timed for t in tokens})
 
 
 def _relative(marking: Marking) -> Marking:

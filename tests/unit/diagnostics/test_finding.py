@@ -146,3 +146,56 @@ def test_two_elements_written_alike(tmp_path: Path) -> None:
     assert examined.flat is not None, report(d)
     said = asked(examined, "bound Top'Twice <= 1")
     assert "there are several places `Top'Twice`: `Top.Twice` and `Top.Twice_2`" in said
+
+
+DOTTED = """
+    net Dotted
+      standard
+      page Top
+        place "Low.P" : INT = 1`1
+        place Held : INT
+        subst Low = Sub (Inp -> Held)
+        trans "Low.T"
+          both "Low.P" : 1
+      page Sub
+        place Inp port in : INT
+        place P : INT
+        trans T
+          both P : 1
+      page Fusion
+        place Both : INT
+        place Own fusion Both : INT
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ('bound "Top.Low.P" <= 1', ["Top'Low_P", "Sub'P"]),
+        ('always enabled("Top.Low.T")', ["Top'Low_T", "Sub'T"]),
+        ('bound "Fusion.Both" <= 1', ["Fusion'Both", "Fusion'Own"]),
+    ],
+)
+def test_a_path_that_two_have_as_they_are_drawn_is_refused(
+    tmp_path: Path, text: str, names: list[str]
+) -> None:
+    examined = front.examine(write(DOTTED, tmp_path / "n.cpn"), Diagnostics())
+    said = asked(examined, text)
+    assert said.count("error[property-unknown-name]") == 1, said
+    hint = said.partition("write one of ")[2].splitlines()[0]
+    assert sorted(hint.split(", ")) == sorted(f"`{name}`" for name in names)
+    for name in names:
+        kind = f"always enabled({name})" if "enabled" in text else f"bound {name} <= 1"
+        assert asked(examined, kind) == ""
+
+
+def test_an_end_of_a_path_may_be_of_two(tmp_path: Path) -> None:
+    net = front.examine(write(DOTTED, tmp_path / "n.cpn"), Diagnostics()).flat
+    assert net is not None
+    finder = Finder.of_places(net)
+    for text in ("Low.P", "Top.Low.P"):
+        assert {net.places[i].id for i in finder.ending(text)} == {
+            x.id for x in net.place_instances if x.name in ("Low.P", "P")
+        }
+    assert len(finder.ending("Fusion.Both")) == 2
+    assert len(finder.ending("Top.Held")) == len(finder.ending("Low.Inp")) == 1

@@ -345,7 +345,7 @@ TICKS = """
 
 @pytest.mark.parametrize(
     ("loop", "end", "ok"),
-    [(1, 10, True), (0, 14, True), (0, 9, True), (0, 7, False), (1, 14, True), (2, 10, False)],
+    [(1, 10, True), (0, 14, False), (0, 9, True), (0, 7, False), (1, 14, True), (2, 10, False)],
 )
 def test_a_lasso_of_a_timed_cell_comes_back_at_the_time_of_its_end(
     loop: int, end: int, ok: bool
@@ -355,6 +355,81 @@ def test_a_lasso_of_a_timed_cell_comes_back_at_the_time_of_its_end(
     written = list(trace(Game(net), steps=2 if loop == 0 else 3))
     told = changed(written[-1], loop=loop, why="evidence", t=end)
     assert replay_lines([changed(written[0], by="verify"), *written[1:-1], told], net).ok is ok
+
+
+@pytest.mark.parametrize(
+    ("times", "why"),
+    [
+        ([2, 6, 10], ""),
+        ([5, 9, 13], ""),  # it may be late while somebody waits
+        ([5, 9, 14], "it says time 14, but after 13 nothing is waited for"),
+        ([6, 10, 14], "it says time 6, but after 5 nothing is waited for"),
+        ([3, 6, 10], "at time 6"),  # the token is there at 7
+        ([3, 2, 10], "time goes back: 2 after 3"),
+        ([2, 6.5, 11], "it says time 6.5, but model time is a whole number"),
+    ],
+)
+def test_the_clock_of_a_cell_goes_on_while_something_is_waited_for(
+    times: list[float], why: str
+) -> None:
+    net = flat(TICKS.replace("place Q", "place R : TINT = 1`0 @ 5\n        place Q"))
+    head, *steps, _ = trace(Game(net), steps=3)
+    moved = [changed(step, t=t) for step, t in zip(steps, times, strict=True)]
+    result = replay_lines([changed(head, by="verify"), *moved], net)
+    assert why in result.why if why else result.ok, result.why
+
+
+CYCLE = """
+    net Cycle
+      standard
+      colset UN = unit timed;
+      page Top
+        place P : UN = 1`()@2
+        place R : UN = 1`()@9
+        place Q
+        trans Begin
+          in P : ()
+          out Q : ()
+        trans Go
+          in Q : ()
+"""
+
+
+@pytest.mark.parametrize(
+    ("owner", "messages", "t", "ok"),
+    [
+        ((0, 0), (), 2, True),
+        ((0, 0), (), 3, False),  # it would not have rested before
+        ((0, 0), (2,), 3, True),  # it had not seen the message
+        ((0, 1), (2,), 3, True),  # the other one may be slow
+    ],
+)
+def test_no_time_goes_by_while_the_supervisor_fires(
+    owner: tuple[int, int], messages: tuple[int, ...], t: int, ok: bool
+) -> None:
+    net = flat(CYCLE)
+    head, first, second, _ = trace(Game(net))
+    told = [changed(head, by="verify"), first, changed(second, t=t)]
+    who = Parties(("supervisor", "r"), owner, frozenset(messages), (), frozenset())
+    result = replay_lines(told, net, parties=who)
+    assert result.ok is ok
+    assert ok or "in its cycle at 2 the supervisor fires `Top.Go` as well" in result.why
+
+
+@pytest.mark.parametrize("t", [1, -1, 0.5, 10**400])
+def test_a_run_of_an_untimed_cell_has_no_time(net: FlatNet, t: float) -> None:
+    head, first, *_ = lines(net)
+    head = changed(head, by="verify")
+    assert replay_lines([head, first], net).ok
+    assert "but without time the clock shows 0" in refused(net, [head, changed(first, t=t)]).why
+
+
+@pytest.mark.parametrize(("by", "ok"), [("reference", False), ("verify", False), ("run", True)])
+def test_only_programs_of_a_cell_write_notes(net: FlatNet, by: str, ok: bool) -> None:
+    head, first, *_ = lines(net)
+    note = {"t": 0, "event": "tool", "robot": "r", "action": "drill", "duration": 1.0}
+    told = [changed(head, by=by), json.dumps(note), first]
+    assert replay_lines(told, net, is_whole=True).ok is ok
 
 
 @pytest.mark.parametrize("by", ["run", "supervisor"])
