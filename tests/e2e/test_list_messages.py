@@ -80,10 +80,10 @@ def test_a_list_that_cannot_be_sent_is_found_out(value: str, words: str, tmp_pat
     assert error.message.startswith("messages: the message ") and words in error.message
 
 
-@pytest.mark.parametrize(("length", "words"), [(200, ""), (201, "not in the colour set")])
+@pytest.mark.parametrize(("length", "words"), [(600, ""), (601, "not in the colour set")])
 def test_a_longest_length_makes_room(length: int, words: str, tmp_path: Path) -> None:
-    net = random_lists.ONE.replace("list ELEMENT", "list INT with 0..200")
-    net = net.replace("VALUE", f"List.tabulate ({length}, fn i => i)")
+    net = random_lists.ONE.replace("list ELEMENT", "list INT with 0..600")
+    net = net.replace("VALUE", f"List.tabulate ({length}, fn i => 1000000000 + i)")
     cell = small_cell.write(tmp_path / "cell", net, random_lists.ONE_TOML)
     d, out = Diagnostics(), tmp_path / "out"
     made = generate(cell, d)
@@ -91,12 +91,15 @@ def test_a_longest_length_makes_room(length: int, words: str, tmp_path: Path) ->
         assert made is None and any(words in e.message for e in d.errors), [str(i) for i in d]
         return
     assert made is not None, [str(i) for i in d]
+    makefile = next(f.text for f in made.files if f.path == "Makefile")
+    assert "-DPN_CHANNEL_SCALARS=601U" in makefile
+    assert f"FRAME_MAX ?= {16_384 + 104 * (601 - 64)}\n" in makefile  # no warnings of frames
     found = conform_cell(cell, d)
     assert found is not None and found.complete and not found.deviates, found
     assert run_cell(cell, RunOptions(out=out, backend="fake"), d) is not None, [str(i) for i in d]
     rows = [x.split("\t") for x in (out / "messages.tsv").read_text().splitlines()]
     sent = {row[5] for row in rows if row[1] == "batch"}
-    assert sent == {f"{length} " + " ".join(map(str, range(length)))}
+    assert sent == {f"{length} " + " ".join(str(10**9 + i) for i in range(length))}
 
 
 def test_lists_of_lists_are_refused(tmp_path: Path) -> None:

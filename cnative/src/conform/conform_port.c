@@ -36,7 +36,7 @@
 #include "../supervisor/supervisor_impl.h"
 
 #define FILES_MAX   512U
-#define FILE_SIZE   4200U /* of a message at most 4095 */
+#define FILE_SIZE   (PN_CHANNEL_TEXT + 104U) /* no message is as long */
 #define NAME_SIZE   256U
 #define LINE_SIZE   (2U * (FILE_SIZE + NAME_SIZE) + 32U)
 #define ANSWER_SIZE ((size_t)1U << 24U)

@@ -75,6 +75,11 @@ def for_messages(room: int) -> tuple[str, ...]:
     return (f"-DPN_CHANNEL_SCALARS={room}U",) if room > LEAST_ROOM else ()
 
 
+def frame_max(room: int) -> int:
+    """`FRAME_MAX` with what frames have for messages of so many values: each, and its text."""
+    return FRAME_MAX + 104 * max(room - LEAST_ROOM, 0)
+
+
 def for_net(generated: str) -> tuple[str, ...]:
     """What the compiler is told besides `-O2`, or whatever else is asked for, about the generated C of a net."""
     return QUICKER if is_large(generated) else ()

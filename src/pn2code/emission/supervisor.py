@@ -216,6 +216,7 @@ def emit(
         resets=_resets(compiled) if compiled is not None else _ANY,
         c_flags=c_flags,
         message_flags=c_flags.for_messages(partition.message_room),
+        frame_max=c_flags.frame_max(partition.message_room),
         net_flags=" ".join(c_flags.for_net(net_text)),
         needs=required,
     )

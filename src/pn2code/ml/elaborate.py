@@ -49,12 +49,19 @@ from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.typing.context import Context, TooDeepError, suggestion
 from pn2code.ml.typing.declarations import Declarations
-from pn2code.ml.typing.declared import break_modules, declared_by, names_in, types_declared_by
+from pn2code.ml.typing.declared import (
+    break_modules,
+    declared_by,
+    names_in,
+    type_names_in,
+    types_declared_by,
+)
 from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
     BrokenType,
     ConEntry,
+    Entry,
     HiddenEntry,
     InstanceEntry,
     InstanceFunction,
@@ -62,6 +69,7 @@ from pn2code.ml.typing.environment import (
     UnsupportedEntry,
     declared_at,
     library_scope,
+    type_at,
 )
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import ICon, TypeTooLargeError, from_type
@@ -327,6 +335,7 @@ class Elaborator:
         before = self._ctx.errors
         self._ctx.tainted = False
         asks = self._asks(changed)
+        before_it = dict(self._ctx.top.values) if asks else {}
         with self._on_page(asks):
             build = self._declare.declare(changed)
         if self._ctx.errors == before and not self._ctx.tainted:
@@ -360,13 +369,7 @@ class Elaborator:
             self._ctx.unifier.close(weak)
         self._ctx.weak.clear()
         if asks:
-            names, bound = names_in(changed)
-            own = declared_by(changed)
-            known = {
-                name: declared_at(self._ctx.top, name) for name in (names | bound) - own - {"inst"}
-            }
-            for name in own:
-                self._ctx.top.values[name] = InstanceFunction(name, changed, known, bound)
+            self._declare_anew(changed, before_it)
             return
         for one in made:
             if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
@@ -377,6 +380,26 @@ class Elaborator:
                     self._bodies[one.pattern.symbol.uid] = one.value
             elif isinstance(one, core.RecBind):
                 self._bodies.update({symbol.uid: body for symbol, body in one.bindings})
+
+    def _declare_anew(self, dec: s.Dec, before: Mapping[str, Entry]) -> None:
+        """Keep a declaration of functions that ask for `inst ()`: it is declared again where one of them is used.
+
+        Args:
+            dec: the declaration.
+            before: what the net's own names stood for before it.
+        """
+        top = self._ctx.top
+        names, bound = names_in(dec)
+        own = declared_by(dec)
+        known = {name: declared_at(top, name) for name in (names | bound) - own}
+        if isinstance(dec, s.ValDec):  # `val f = fn x => f x`: its own names may stand for others
+            earlier = {n for b in dec.bindings if not b.recursive for n in names_in(b.value)[0]}
+            known |= {name: before.get(name, top.parent) for name in earlier & own}
+        types = {name: type_at(top, name) for name in type_names_in(dec)}
+        found = (before.get(name) for name in sorted(names - own))
+        needs = tuple(entry for entry in found if isinstance(entry, InstanceFunction))
+        for name in own:
+            top.values[name] = InstanceFunction(name, dec, known, types, bound, needs)
 
     def _asks(self, dec: s.Dec) -> bool:
         """Whether it is a declaration of functions alone that ask for `inst ()`."""

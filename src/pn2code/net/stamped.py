@@ -31,12 +31,15 @@ class Stamped:
             if isinstance(dec, core.RecBind)
             for symbol, body in dec.bindings
         }
+        self._met: set[int] = set()
+        """Functions that have been looked at for the expression; where one calls itself it gives what it gives else."""
 
     def tokens(self, e: core.Exp) -> core.Exp | None:
         """The multi-set without stamps; None if it may have a delay."""
         t = e.type
         if not (isinstance(t, TCon) and t.name == "list" and isinstance(t.args[0], TCon)):
             return None
+        self._met.clear()
         return self._tokens(e, list_of(t.args[0].args[0]), 0)
 
     def _tokens(self, e: core.Exp, t: TCon, depth: int) -> core.Exp | None:
@@ -68,9 +71,11 @@ class Stamped:
                 inner = self._tokens(e.body, t, depth + 1)
                 return None if inner is None else core.Let(e.declarations, inner, t, e.span)
             case core.Apply(core.Var(symbol)) if symbol.uid in self._functions:
-                bodies = [rule.body for rule in self._functions[symbol.uid].rules]
-                if self._each(bodies, t, depth) is None:
-                    return None
+                if symbol.uid not in self._met:
+                    self._met.add(symbol.uid)
+                    bodies = [rule.body for rule in self._functions[symbol.uid].rules]
+                    if self._each(bodies, t, depth) is None:
+                        return None
                 bare = core.Builtin("Time.ms", TFun(e.type, t), e.span, t.args)
                 return core.Apply(bare, e, t, e.span)
             case _:

@@ -93,6 +93,7 @@ def test_an_initial_marking_has_it_with_a_warning() -> None:
         ("fun own () = inst ();", "let fun own () = 7 + inst () in own () end", 8, 9),
         ("val c = 5; fun own () = c * inst ();", "own ()", 5, 10),
         ("fun own x = x + inst (); val x = 3;", "own x", 4, 5),
+        ("fun a () = inst (); fun b () = a () + a (); fun own c = b () + a () + c;", "own 1", 4, 7),
     ],
 )
 def test_declared_functions_have_that_of_where_they_are_called(
@@ -123,6 +124,34 @@ def test_where_no_instance_is_known_there_is_none(declaration: str, why: str) ->
     text = net(value=value).replace("fun twice x = 2 * x;", declaration.replace("; ", ";\n  "))
     error = diagnose(text).errors[0]
     assert error.code == "unsupported-function" and why in error.message
+
+
+@pytest.mark.parametrize(
+    ("declarations", "name"),
+    [
+        ("fun own x = x + inst (); fun inst () = 7;", "inst"),
+        ("fun other x = x + 1; fun own x = other (inst () + x); val other = 3;", "other"),
+        ("fun own x = x + 1; val own = fn x => own x + inst ();", "own"),
+        ("fun own x = x + inst (); val own = fn x => own x + inst ();", "own"),
+        ("val abs = fn x => abs x + inst (); val own = abs;", "abs"),
+        ("type t = int; fun own (x : t) = x + inst (); type t = string;", "t"),
+        ("fun own x = (fn abs => abs + inst ()) x + abs x; fun abs _ = 100;", "abs"),
+    ],
+)
+def test_a_name_that_stands_for_something_else_by_now_is_told(declarations: str, name: str) -> None:
+    declared = declarations.replace("; ", ";\n  ")
+    text = net(value="own 1").replace("fun twice x = 2 * x;", declared)
+    error = diagnose(text).errors[0]
+    assert error.code == "unsupported-function"
+    assert f"`{name}`, which is declared again" in error.message
+
+
+def test_functions_that_call_each_other_are_declared_once_for_each_use() -> None:
+    """The time would double with each one."""
+    calls = [f"fun f{i} 0 = 0 | f{i} x = f{i - 1} x + f{i - 1} (x - 1);" for i in range(1, 40)]
+    declared = "\n  ".join(["fun f0 x = x * inst ();", *calls])
+    made = flat(net(value="f39 0").replace("fun twice x = 2 * x;", declared))
+    assert len(made.transitions) == 2
 
 
 @pytest.mark.parametrize(

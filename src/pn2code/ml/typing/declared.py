@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from pn2code.diagnostics import Span
@@ -34,25 +35,29 @@ def declared_by(dec: s.Dec) -> set[str]:
             return set()
 
 
-def names_in(dec: s.Dec) -> tuple[frozenset[str], frozenset[str]]:
-    """The names of expressions in a declaration, and those of its patterns and functions."""
-    used: set[str] = set()
-    bound: set[str] = set()
-    todo: list[Any] = [dec]
+def names_in(part: s.Dec | s.Exp) -> tuple[frozenset[str], frozenset[str]]:
+    """The names of expressions in a part of a declaration, and those of its patterns and functions."""
+    nodes = list(_nodes(part))
+    used = frozenset(one.name for one in nodes if isinstance(one, s.NameExp))
+    bound = frozenset(one.name for one in nodes if isinstance(one, s.NamePat | s.FunBinding))
+    return used, bound
+
+
+def type_names_in(dec: s.Dec) -> frozenset[str]:
+    """The names of types in a declaration."""
+    return frozenset(one.name for one in _nodes(dec) if isinstance(one, s.NameTy))
+
+
+def _nodes(part: object) -> Iterator[object]:
+    """All nodes of a part of the syntax."""
+    todo: list[Any] = [part]
     while todo:
         one = todo.pop()
         if isinstance(one, tuple):
             todo.extend(one)
-        elif isinstance(one, s.NameExp):
-            used.add(one.name)
-        elif isinstance(one, s.NamePat):
-            bound.add(one.name)
-        elif isinstance(one, s.FunBinding):
-            bound.add(one.name)
-            todo.append(one.clauses)
         elif dataclasses.is_dataclass(one) and not isinstance(one, Span):
-            todo.extend(getattr(one, part.name) for part in dataclasses.fields(one))
-    return frozenset(used), frozenset(bound)
+            yield one
+            todo.extend(getattr(one, field.name) for field in dataclasses.fields(one))
 
 
 def types_declared_by(dec: s.Dec) -> set[str]:

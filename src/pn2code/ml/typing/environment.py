@@ -136,29 +136,69 @@ class InstanceFunction:
     Args:
         name: of the function.
         declaration: what declares it.
-        known: what the names in it stood for at top level; None for what the net has not declared.
+        known: what the names in it stood for; None for what is not declared.
+        types: the same for the names of types.
         bound: those that its patterns may bind.
+        needs: other functions like it that it may call.
     """
 
     name: str
     declaration: Dec
     known: Mapping[str, object]
+    types: Mapping[str, object]
     bound: frozenset[str]
+    needs: tuple[InstanceFunction, ...] = ()
+
+    def declarations(self) -> list[Dec]:
+        """What is declared with it: each declaration once, behind those that it needs."""
+        return [one.declaration for one in self._all()]
+
+    def _all(self) -> list[InstanceFunction]:
+        """One for each declaration, behind those that it needs."""
+        found: dict[int, InstanceFunction] = {}
+        begun: set[int] = set()
+        todo = [(self, False)]
+        while todo:
+            one, is_behind = todo.pop()
+            key = id(one.declaration)
+            if is_behind:
+                found[key] = one
+            elif key not in begun:
+                begun.add(key)
+                todo.append((one, True))
+                todo.extend((other, False) for other in one.needs)
+        return list(found.values())
 
     def changed(self, top: Scope) -> str:
-        """A name in it that stands for something else by now; "" if there is none."""
+        """A name in what is declared with it that stands for something else by now; "" if there is none."""
+        return next((name for one in self._all() for name in one._changed(top)), "")
+
+    def _changed(self, top: Scope) -> Iterator[str]:
         for name, before in self.known.items():
             now = declared_at(top, name)
             own = before is None and name in self.bound and not isinstance(now, ConEntry)
             if now is not before and not own:
-                return name
-        return ""
+                yield name
+        for name, before in self.types.items():
+            if type_at(top, name) is not before:
+                yield name
 
 
 def declared_at(top: Scope, name: str) -> object:
-    """What the net has declared under a name, or as the structure of a qualified name."""
+    """What a name stands for at top level; of a qualified name, its structure, if the net has declared one."""
     first, *rest = split_name(name)
-    return top.structures.get(first) if rest else top.values.get(name)
+    if rest:
+        return top.structures.get(first)
+    found = top.value(name)
+    if isinstance(found, InstanceEntry) and top.parent is not None:
+        return top.parent.value(name)
+    return found
+
+
+def type_at(top: Scope, name: str) -> object:
+    """The same for the name of a type."""
+    first, *rest = split_name(name)
+    return top.structures.get(first) if rest else top.type(name)
 
 
 @frozen

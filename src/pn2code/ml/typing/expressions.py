@@ -523,15 +523,14 @@ class Expressions:
         return Draft(t, build)
 
     def _own(self, entry: InstanceFunction, span: Span) -> Draft:
-        """A declared function that asks for `inst ()`, declared again where it is used."""
+        """A declared function that asks for `inst ()`, declared again where it is used, with those that it needs."""
         outer = self._ctx.scope
         self._ctx.scope = Scope(self._ctx.top)
         if isinstance(self._ctx.scope.value("inst"), UnsupportedEntry):
             self._ctx.scope.values["inst"] = InstanceEntry()
         try:
-            return self.infer(
-                s.LetExp((entry.declaration,), s.NameExp(entry.name, False, span), span)
-            )
+            declarations = tuple(entry.declarations())
+            return self.infer(s.LetExp(declarations, s.NameExp(entry.name, False, span), span))
         finally:
             self._ctx.scope = outer
 
