@@ -10,7 +10,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.graph import explore_cell
 from pn2code.geometry.words import reason
 from pn2code.verdict.opened import read
-from pn2code.verify.exploring.limits import Limits, Order
+from pn2code.verify.exploring.limits import Limits
 
 
 def test_what_raises_an_exception_is_named(tmp_path: Path) -> None:
