@@ -113,7 +113,7 @@ def examine(
                 return None
             wider = None
         if is_open and not graph.arcs:
-            return Geometry((), reason(graph.why))
+            return Geometry((), reason(graph.why, graph.raised))
 
     def part(order: Order) -> CellGraph | None:
         most = min(limits.max_states or MOST_OF_PART, MOST_OF_PART)

@@ -34,6 +34,7 @@ from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.data import Timed, Value
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
+from pn2code.verify.answers.outcome import error_text, has_raised
 from pn2code.verify.controller.control_types import MOST_WRITTEN, CellProgram
 from pn2code.verify.controller.forgetting import forgetful
 from pn2code.verify.controller.running import Running
@@ -85,6 +86,7 @@ class CellGraph:
         marked: of each state the places of the cell's net that hold tokens, and how many.
         over: the states in which the supervisor has come to a final place.
         why: it is not whole, and why; "": it is.
+        raised: if that is "error": what raises the exception; "" where it is not known.
         cut: of a part of the graph, the states of which not all arcs are there.
         wider: it is that of a net that does more (`verify.controller.forgetting`): what can be under way need not be.
     """
@@ -106,6 +108,7 @@ class CellGraph:
         self.cut, self.wider = cut, wider
         self.elements, self.arcs, self.marked = elements, arcs, marked
         self.why = why or undetermined(partition.net)
+        self.raised = ""
         self.over = frozenset(i for i, m in enumerate(marked) if running.over in m)
         self._game = Game(partition.net, storage, files=Files(None))
         self._listener = Listener(
@@ -251,7 +254,10 @@ def explore_cell(
             return None
         why = "" if found.complete else found.why
         if not file.exists() or (why and not part):
-            return _read(partition, storage, running, (), why or "states")
+            graph = _read(partition, storage, running, (), why or "states")
+            if has_raised(found):
+                graph.raised = error_text(running.net, found)
+            return graph
         graph = _read(partition, storage, running, _rows(file), why)
         seen = len(graph.arcs), sum(map(len, graph.arcs))
         if not why and seen != (found.nodes, found.arcs):

@@ -119,7 +119,7 @@ def told(
         d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {problem}", _at(config))
         return None
     if graph is not None and not graph.arcs:
-        why = f"what arms are told is not known: {reason(graph.why)}"
+        why = f"what arms are told is not known: {reason(graph.why, graph.raised)}"
         d.error(codes.REACH_UNKNOWN, why, _at(config))
         return None
     return graph

@@ -47,8 +47,15 @@ _OPEN = {
 }
 
 
-def reason(why: str) -> str:
-    """Why not all is known, as a clause; "": all is."""
+def reason(why: str, raised: str = "") -> str:
+    """Why not all is known, as a clause; "": all is.
+
+    Args:
+        why: one of `Exploration.why`, or of those that are named here.
+        raised: of "error": what raises the exception.
+    """
+    if why == "error" and raised:
+        return f"{_OPEN[why]}: {raised} (`pn2code verify` shows a run to it)"
     return _OPEN.get(why) or clause(why)
 
 

@@ -90,8 +90,7 @@ def of_token(
         return [
             condition
             for part, inner, of in _components(colset, value, e, e.span)
-            if (source := _source(of, taken)) is None or source.resolved != part
-            for condition in _unless_known(part, inner, source, known, e.span)
+            for condition in _of_part(part, inner, of, taken, known, e.span)
         ]
     except _UnaskableError as problem:
         place = problem.args[0]
@@ -115,6 +114,80 @@ def _components(
     written = dict(e.fields) if isinstance(e, core.RecordExp) else {}
     for label, part in parts_of(c).items():
         yield from _components(part, select(value, label, span), written.get(label), span)
+
+
+def _of_part(
+    c: Colset, value: Value, e: core.Exp | None, taken: Set[int], known: Known, span: Span
+) -> list[t.Expression]:
+    """What has to be so of a part of a token."""
+    source = _source(e, taken)
+    if source is not None and source.resolved == c:
+        return []
+    items = _of_items(c, value, e, taken, known)
+    return list(_unless_known(c, value, source, known, span)) if items is None else items
+
+
+def _of_items(
+    c: Colset, value: Value, e: core.Exp | None, taken: Set[int], known: Known
+) -> list[t.Expression] | None:
+    """What has to be so of a list some items of which are written out, `n - 1 :: l` or `[n]`: these, and its length.
+
+    None: some of its other items are not known, or its items cannot be asked one by one.
+    """
+    element = c.components[0].resolved if c.kind is Kind.LIST and c.components[0] else None
+    kind = None if element is None else _ASKED.get(element.kind)
+    if element is None or kind is None or e is None:
+        return None
+    if not has_bounds(element) or not isinstance(value, Scalar):
+        return None
+    found: t.Expression = value.exp
+    left: core.Exp | None = e
+    asked: list[t.Expression] = []
+    written = 0
+    while isinstance(left, core.Apply | core.ListExp):
+        if isinstance(left, core.ListExp):
+            items = lists.items_of(found)
+            if items is None or len(items) != len(left.items):
+                return None
+            pairs = list(zip(items, left.items, strict=True))
+            left = None
+        else:
+            cons = _cons(left)
+            if cons is None:
+                break
+            item, left = cons
+            pairs = [(lists.first(found), item)]
+            found = lists.rest(found)
+        for one, of in pairs:
+            source = _source(of, taken)
+            if source is None or source.resolved != element:
+                asked += _unless_known(element, Scalar(one, kind), source, known, of.span)
+        written += len(pairs)
+    if left is None:
+        length: Colset | None = replace(c, name="", low=written, high=written)
+    else:
+        others = _source(left, taken)
+        whole = None if others is None else others.whole
+        if whole is None or whole.kind is not Kind.LIST:
+            return None
+        if whole.components[0] is None or whole.components[0].resolved != element:
+            return None
+        length = _longer(replace(whole, components=c.components), written)
+    return [*asked, *_unless_known(c, value, length, known, e.span)]
+
+
+_ASKED = {Kind.INT: tdl.Type.INT, Kind.REAL: tdl.Type.REAL, Kind.STRING: tdl.Type.STRING}
+"""Items of lists that have bounds, and can be asked."""
+
+
+def _cons(e: core.Exp) -> tuple[core.Exp, core.Exp] | None:
+    """The first item and the others of `a :: l`."""
+    match e:
+        case core.Apply(core.Con(constructor), core.RecordExp(((_, item), (_, others)))) if (
+            constructor.name == "::"
+        ):
+            return item, others
+    return None
 
 
 def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:

@@ -126,7 +126,7 @@ def look(
     if graph is None:
         return None
     if not graph.arcs:
-        return Times((), timeout, reason(graph.why))
+        return Times((), timeout, reason(graph.why, graph.raised))
     made = []
     for name, cell in cells:
         stage("measuring commands and cycles ...")

@@ -16,6 +16,7 @@ colset DIGITS = list SMALL with 0..3;
 colset FLAGS = list BOOL with 0..2;
 var l, rest : NUMBERS;
 var few, fewer : SHORT;
+var d : SMALL;
 var digits, others : DIGITS;
 var seen : FLAGS;
 """
@@ -110,6 +111,55 @@ def test_items_that_are_in_their_colour_set(tmp_path: Path) -> None:
     assert cell(tmp_path, page, ("x in DIGITS",)).ir is not None
     page = page.replace("if length digits > 1 then tl digits else rev digits", "digits ^^ others")
     found = cell(tmp_path, page, ("x in DIGITS",))
+    assert found.ir is None
+    assert "a script cannot ask whether a value is in it" in found.messages[0]
+
+
+@pytest.mark.parametrize(
+    ("put", "asked"),
+    [
+        ("n :: few", "n >= 0 and n <= 9 and count_of(with_first(few, n)) <= 3"),
+        (
+            "n + 1 :: 3 :: few",
+            "n + 1 >= 0 and n + 1 <= 9 and count_of(with_first(with_first(few, 3), n + 1)) <= 3",
+        ),
+        ("[n]", "n >= 0 and n <= 9"),
+        ("[d, n, d]", "n >= 0 and n <= 9"),
+        ("[d, d]", ""),
+        ("10 :: few", "10 <= 9 and count_of(with_first(few, 10)) <= 3"),
+    ],
+)
+def test_items_that_are_written_are_asked_one_by_one(tmp_path: Path, put: str, asked: str) -> None:
+    page = f"""
+    place Held : DIGITS = 1`[]
+    place Last : SMALL = 1`0
+    trans Next
+      in x : n
+      in Held : few
+      in Last : d
+      out Held : {put}
+      out Last : d
+    """.replace("few", "digits")
+    found = cell(tmp_path, page, ("x in INT",))
+    assert found.ir is not None, found.messages
+    body = " ".join(found.body.split())
+    asked = asked.replace("few", "digits")
+    if not asked:
+        assert "stop" not in body
+        return
+    assert f"if not ({asked}) then stop" in body or f"if not {asked} then stop" in body, body
+
+
+def test_items_of_others_stay_unknown(tmp_path: Path) -> None:
+    """A list of any numbers, behind an item that can be asked."""
+    page = """
+    place Held : DIGITS = 1`[]
+    trans Next
+      in x : l
+      in Held : digits
+      out Held : 1 :: l
+    """
+    found = cell(tmp_path, page, ("x in NUMBERS",))
     assert found.ir is None
     assert "a script cannot ask whether a value is in it" in found.messages[0]
 

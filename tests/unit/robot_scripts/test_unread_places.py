@@ -42,7 +42,7 @@ REFUSED = {
     "head of a list": ("INT", "small", "hd (List.tabulate (small, fn u => u))"),
     "an exception": ("INT", "small", "odd small"),
     "a sum that is too large": ("PAIRS", "k", "[(if k + 1 > 0 then 1 else 0, [])]"),
-    "not in the colour set": ("SMALLS", "small", "[small + 1]"),
+    "not in the colour set": ("SMALLS", "small", "List.map (fn u => u + 1) [small]"),
     "a list that grows": ("SMALLS", "small", "small :: List.tabulate (2, fn u => u)"),
 }
 
@@ -50,6 +50,7 @@ REFUSED = {
 COMPUTED = {
     "a list": ("INTS", "small", "[small, small + 1]", "compute small + 1"),
     "a sum that may be too large": ("INTS", "k", "[k + 1]", "compute k + 1"),
+    "an item that may be too large": ("SMALLS", "small", "[small + 1]", "if not small + 1 <= "),
     "the head of a list": ("INT", "k", "hd (if k > 0 then [k] else [])", "compute first_of("),
 }
 """Lists that scripts have."""

@@ -14,18 +14,22 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
+from pn2code.base.components import components
 from pn2code.base.frozen import frozen, record
 from pn2code.cell.config import CellConfig, Primitive
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.types import TFun
 from pn2code.net.dump import text_of
 from pn2code.robot_scripts.machine import Machine
 from pn2code.verify.controller.commands import lasts
 from pn2code.verify.controller.durations import MOST_VALUES, NOTHING, Durations, Known
+from pn2code.verify.controller.rounds import Turns, Way, turns
 from pn2code.verify.controller.stops import NoProgramError, machine
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
@@ -131,8 +135,13 @@ class Replies:
         )
 
 
-_Quiet = tuple[int, int, Time, str]
-"""A step without a message: from which place to which, what it takes, and its transition."""
+@frozen
+class _Quiet:
+    """A step without a message: its places and tokens, what it takes, and its transition."""
+
+    way: Way
+    time: Time
+    name: str
 
 
 def _endless(who: str, around: Sequence[str], limit: float) -> str:
@@ -141,7 +150,8 @@ def _endless(who: str, around: Sequence[str], limit: float) -> str:
     again = "occurs" if len(around) == 1 else "occur"
     return (
         f"{who} may need any time for an answer: for all that its places say, {names} {again} again and again "
-        f"without a message; guards and values, which may end that, are not looked at here. Whoever owes an answer for "
+        f"without a message; of what may end that, only lists that get shorter and numbers that "
+        f"count within their range are looked at here. Whoever owes an answer for "
         f"`reply_timeout_s`, {limit:g} s, stops the cell (draw each round with places of its own, send a "
         f"message in each round, or {ADVICE})"
     )
@@ -150,20 +160,45 @@ def _endless(who: str, around: Sequence[str], limit: float) -> str:
 def _round(quiet: Sequence[_Quiet]) -> tuple[str, ...]:
     """The transitions of a shortest round that takes time."""
     found: list[tuple[str, ...]] = []
-    for here, there, time, name in quiet:
-        if time.seconds <= 0:
+    for one in quiet:
+        if one.time.seconds <= 0:
             continue
-        ways: dict[int, tuple[str, ...]] = {there: (name,)}
+        here, there = one.way.here, one.way.there
+        ways: dict[int, tuple[str, ...]] = {there: (one.name,)}
         todo = deque([there])
         while todo and here not in ways:
             at = todo.popleft()
-            for begin, end, _, step in quiet:
-                if begin == at and end not in ways:
-                    ways[end] = (*ways[at], step)
+            for step in quiet:
+                end = step.way.there
+                if step.way.here == at and end not in ways:
+                    ways[end] = (*ways[at], step.name)
                     todo.append(end)
         if here in ways:
             found.append(ways[here])
     return min(found, key=len, default=())
+
+
+def _spent(round_: Sequence[_Quiet], colsets: Mapping[int, Colset]) -> Time | None:
+    """What steps that lead round take altogether, at most; None: there is no bound."""
+    if not round_:
+        return Time()
+    every = sum((q.time for q in round_), Time())
+    if every.seconds <= 0:
+        return every
+    found = turns([q.way for q in round_], colsets)
+    if found is None:
+        return None
+    return replace(every, seconds=_seconds(found, [q.time.seconds for q in round_]))
+
+
+def _seconds(found: Turns, each: Sequence[float]) -> float:
+    """Of steps that occur as often as they can: those that count nothing once before, between and after the others."""
+    counts = [(seconds / by, by) for seconds, by in zip(each, found.by, strict=True) if by]
+    between = sum(seconds for seconds, by in zip(each, found.by, strict=True) if not by)
+    if not counts:
+        return between
+    times = found.room // min(by for _, by in counts)
+    return found.room * max(per for per, _ in counts) + (times + 1) * between
 
 
 @record
@@ -183,7 +218,7 @@ class _Silence:
         last: list[tuple[int, Time]] = []
         for step in self.program.steps:
             t = step.transition
-            (here,) = (p for p, *_ in step.takes if p in self.program.control)
+            ((here, term),) = ((p, term) for p, term, *_ in step.takes if p in self.program.control)
             acts = spent.of(t.code.action) if t.code is not None else Time()
             for outcome in step.outcomes:
                 there = self.program.target(outcome)
@@ -194,20 +229,50 @@ class _Silence:
                     last.append((here, acts))  # commands, then the message, then the delay
                     begins[there] = Time.longest((begins.get(there, Time()), after))
                 else:
-                    quiet.append((here, there, acts + after, t.short))
+                    put = None if term.whole else dict(outcome.puts)[there]
+                    quiet.append(_Quiet(Way(here, there, term.value, put), acts + after, t.short))
         at = dict(begins)
         for turn in range(len(self.program.control) + 1):
             changed = False
-            for here, there, time, _ in quiet:
+            for one in quiet:
+                here, there = one.way.here, one.way.there
                 if here in at:
-                    reached = Time.longest((at.get(there, Time()), at[here] + time))
+                    reached = Time.longest((at.get(there, Time()), at[here] + one.time))
                     changed = changed or reached != at.get(there)
                     at[there] = reached
             if not changed:
                 break
             if turn == len(self.program.control):
-                return Time(_ENDLESS, True, round=_round([q for q in quiet if q[0] in at]))
+                reachable = [q for q in quiet if q.way.here in at]
+                counted = self._counted(begins, reachable)
+                if counted is None:
+                    return Time(_ENDLESS, True, round=_round(reachable))
+                at = counted
         return Time.longest([*at.values(), *(at[p] + acts for p, acts in last if p in at)])
+
+    def _counted(
+        self, begins: Mapping[int, Time], quiet: Sequence[_Quiet]
+    ) -> dict[int, Time] | None:
+        """When places are left, at the latest, where each round ends by what its tokens are; None: one does not."""
+        onward: dict[int, list[int]] = {}
+        for q in quiet:
+            onward.setdefault(q.way.here, []).append(q.way.there)
+        groups = list(components(begins, lambda p: onward.get(p, ())))
+        colsets = {p: self.program.net.places[p].colset for group in groups for p in group}
+        at = dict(begins)
+        for group in reversed(groups):
+            inside = set(group)
+            round_ = [q for q in quiet if q.way.here in inside and q.way.there in inside]
+            spent = _spent(round_, colsets)
+            if spent is None:
+                return None
+            left = Time.longest(at[p] for p in inside if p in at) + spent
+            at |= dict.fromkeys(inside, left)
+            for q in quiet:
+                if q.way.here in inside and q.way.there not in inside:
+                    known = at.get(q.way.there, Time())
+                    at[q.way.there] = Time.longest((known, left + q.time))
+        return at
 
     def _delay(self, e: core.Exp, transition: str) -> Time:
         found = self.durations.seconds(e)
