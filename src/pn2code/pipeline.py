@@ -234,9 +234,10 @@ def _inputs(config: CellConfig | None, given: Path | None) -> Iterator[OutputFil
 def program_digest(
     net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int = 31
 ) -> str:
-    """What the generated programs depend on, as their heads and traces say: the net's bytes, the logic of the cell,
-    replaced values, other integers."""
+    """What the generated programs depend on, as their heads and traces say: the net's bytes and those of files that it
+    uses, the logic of the cell, replaced values, other integers."""
     parts = [net.sha256, config.logic_digest() if config else "", repr(sorted(values.items()))]
     if int_bits != 31:
         parts.append(f"int {int_bits}")
+    parts += [f"uses {sha256}" for _, sha256 in net.program.used]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

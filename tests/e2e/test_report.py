@@ -23,7 +23,7 @@ from helpers.browser import launched, opened
 from helpers.legible import complaints
 from helpers.netbuilder import cpn, write
 from helpers.processes import pn2code, started
-from pn2code.dossier.steps import Done
+from pn2code.dossier.steps import Done, Step
 
 PHONE = {"viewport": {"width": 390, "height": 844}}
 PAGES = ("index.html", "programs.html", "nets.html")
@@ -267,3 +267,62 @@ def test_folders_that_are_no_reports_are_left_alone(
     assert verdict(out).startswith("Nothing is known to be wrong, but not everything is known.")
     done = pn2code("report", net, "-o", net)
     assert done.returncode == 2 and "is not a folder" in done.stderr
+
+
+ARM = 'model = "kr120_r2500"\ntool = "tool.urdf"\nbase = {}\nhome = [0.0, -100.0, 110.0, 0.0, 80.0, 0.0]\n'
+
+
+@pytest.mark.parametrize("way", ["written", "written and put back"])
+@pytest.mark.parametrize(
+    "name", ["cell.toml", "cell.cpn", "s.in", "more.sml", "new.toml", "tool.urdf"]
+)
+def test_files_that_change_while_the_report_is_made(
+    name: str, way: str, tmp_path: Path, root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each command reads them anew: their answers may be about different ones, and no hash says which."""
+    net = STOCK.replace("  var k", '  use "more.sml"\n  var k', 1)
+    cell = stock(tmp_path / "cell", "2\n", net)
+    (cell / "more.sml").write_text("val more = 1;\n")
+    shutil.copy(root / "examples/assembly/cup.urdf", cell / "tool.urdf")
+    toml = (cell / "cell.toml").read_text().replace("[devices.robot1]", "[robots.robot1]")
+    (cell / "cell.toml").write_text(toml + ARM)
+
+    def carried_out(step: Step, _: Path) -> Done:
+        if step.verb == "generate" and way != "not at all":
+            file = cell / name
+            old = file.read_bytes() if file.is_file() else b""
+            file.write_bytes(old + b" ")
+            if way != "written":
+                file.write_bytes(old)
+        return Done(step, 0)
+
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", carried_out)
+    done = pn2code("report", cell, "-o", tmp_path / "out")
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert f"changed while the report was made: `{name}`" in done.stdout
+    said = verdict(tmp_path / "out")
+    assert "Nothing is known to be wrong, but not everything is known" in said
+    assert (
+        f"Changed while the report was made, so that its commands may have looked at different ones: {name}."
+        in said
+    )
+    way = "not at all"
+    done = pn2code("report", cell, "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stdout + done.stderr
+    files = first_page(tmp_path / "out").xpath("(//section[@id='files']//table)[1]//th[@scope]")
+    assert {"more.sml", "tool.urdf", "s.in"} <= {f.text_content() for f in files}
+
+
+def test_layouts_that_were_not_asked_for_are_named(
+    tmp_path: Path, root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 0))
+    done = pn2code(
+        "report", root / "examples/riveting", "-o", tmp_path / "out", "--layout", "paper"
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "not looked at: the geometry and runs of layout" in done.stdout
+    assert "Not looked at: the geometry and runs of layout" in verdict(tmp_path / "out")
+    assert "All that was looked at is as it should be" in verdict(tmp_path / "out")
+    done = pn2code("report", root / "examples/riveting", "-o", tmp_path / "out")
+    assert "not looked at" not in done.stdout

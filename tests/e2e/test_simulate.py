@@ -307,7 +307,8 @@ def test_full_disk(tmp_path: Path, engine: str, monitored: bool) -> None:
 @pytest.mark.parametrize("engine", ["compiled", "reference"])
 def test_what_was_written_ends_with_a_whole_line(tmp_path: Path, engine: str) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
-    result(net, "--steps", 1, "--engine", engine)
+    built = command(net, "--steps", 1, "--engine", engine)  # as below: forks compile in another way
+    subprocess.run(built, check=True, capture_output=True)
     trace = tmp_path / "run.trace.jsonl"
     script = 'ulimit -f 8; trap "" XFSZ; exec "$@"'
     done = subprocess.run(
@@ -356,7 +357,7 @@ def test_a_second_run_does_not_compile(tmp_path: Path, once_compiler: Path) -> N
     result(net, env=_environment(tmp_path, once_compiler))
     folder = tmp_path / "cache" / "pn2code" / "programs"
     kept = sorted(p.name for p in folder.iterdir())
-    assert [n.split("-")[0] for n in kept] == ["simulate", "simulate"]
+    assert [n.split("-")[0] for n in kept] == ["simulate"] * 4  # each with its sum
     # A compiler that fails when it compiles, but still says its version.
     fake = _compiler(tmp_path / "cc", once_compiler, before='[ "$1" = --version ] || exit 1')
     environment = _environment(tmp_path, fake)
@@ -377,7 +378,43 @@ def test_many_at_the_same_time(tmp_path: Path, once_compiler: Path) -> None:
     outs = [json.loads(p.communicate(timeout=600)[0]) for p in processes]
     assert all(p.returncode == 0 for p in processes)
     assert len({o["steps"] for o in outs}) == 1
-    assert len(list((tmp_path / "cache" / "pn2code" / "programs").iterdir())) == 2
+    assert len(list((tmp_path / "cache" / "pn2code" / "programs").iterdir())) == 4
+
+
+def _other_numbers(data: bytes) -> bytes:
+    assert b"\xe8\x03\x00\x00" in data
+    return data.replace(b"\xe8\x03\x00\x00", b"\xe7\x03\x00\x00")
+
+
+DAMAGES = {
+    "empty": lambda data: b"",
+    "half": lambda data: data[: len(data) // 2],
+    "no end": lambda data: data[: len(data) // 2] + bytes(len(data) - len(data) // 2),
+    "another number": _other_numbers,
+}
+
+
+@pytest.mark.parametrize("suffix", ["", ".a"], ids=["program", "runtime"])
+def test_what_is_kept_is_made_again_when_it_is_damaged(
+    suffix: str, tmp_path: Path, once_compiler: Path
+) -> None:
+    """As by a power failure: it would end with an internal error for ever, or answer anything."""
+    net = write(COUNTER, tmp_path / "cell.cpn")
+    environment = _environment(tmp_path, once_compiler)
+    right = result(net, "--engine", "compiled", env=environment)
+    folder = tmp_path / "cache" / "pn2code" / "programs"
+    (kept,) = [p for p in folder.iterdir() if p.suffix == suffix]
+    for name, damage in DAMAGES.items():
+        if suffix:  # the program is made of it
+            (program,) = [p for p in folder.iterdir() if not p.suffix]
+            program.unlink()
+            if name == "another number":
+                continue
+        kept.write_bytes(damage(kept.read_bytes()))
+        found = result(net, "--engine", "compiled", env=environment)
+        assert {k: found[k] for k in found if "seconds" not in k} == {
+            k: right[k] for k in right if "seconds" not in k
+        }, name
 
 
 def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,7 +72,7 @@ ALLOWED: dict[str, set[str]] = {
         "verify"},
     "timing": {"cell", "channel_model", "diagnostics", "geometry", "net", "properties", "robot", "semantics", "trace",
         "verdict", "verify"},
-    "dossier": {"toolchain", "verify"},
+    "dossier": {"arms", "cell", "diagnostics", "net", "robot", "semantics", "toolchain", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
         "drawing", "emission", "geometry", "input_files", "ir", "live", "lowering", "ml", "net", "new_cell", "pipeline",
         "play", "properties", "reading", "registers", "replay", "report", "robot", "robot_scripts", "run", "semantics",

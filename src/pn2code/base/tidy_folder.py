@@ -39,7 +39,7 @@ _MARK = (
 _OWN = {
     "": r"[0-9a-f]{40}\.template(\w+\.tmp)?|(cpnml|hulls|property|tdl)-[0-9a-f]+(\.json|\.lark|-\w+\.tmp)",
     "modules": r".+\.pyc(\.\d+)?",
-    "programs": r"[a-z]+(-runtime)?-[0-9a-f]{16,}(\.a)?(-\w+\.tmp)?|build-\w{8}/.+",
+    "programs": r"[a-z]+(-runtime)?-[0-9a-f]{16,}(\.a)?(\.sum)?(-\w+\.tmp)?|build-\w{8}/.+",
     "answers": r"[a-z]+-[0-9a-f]{40}(\.json|-\w+\.tmp)",
 }
 """How files are named that pn2code has made, by folder; their paths within it."""

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
     from pn2code.dossier.findings import Chapter
     from pn2code.dossier.steps import Done, Step
+    from pn2code.dossier.subject import Subject
 
 EPILOG = """Examples:
 
@@ -98,6 +99,7 @@ def report(
     if found is None:
         stop(d, form)
     path, config = found
+    subject = _subject(path, config, inputs)
     console = Console(highlight=False)
     if durations and config is None:
         _refuse(f"only a cell has durations, and there is no cell.toml beside `{net}`")
@@ -133,14 +135,18 @@ def report(
         with line:
             carried = steps.carry_out(wanted, out, told)
         chapters = [findings.read(done, out) for done in carried]
-        left_out = _left_out(config, backend)
-        _write(chapters, _subject(path, config, inputs), net, out, left_out)
+        left_out = _left_out(config, layouts, backend)
+        changed = subject.changed(_subject(path, config, inputs))
+        _write(chapters, subject.rows, net, out, left_out, changed)
     except OSError as problem:
         _refuse(f"cannot work in `{out}`: {os_reason(problem)}")
-    verdict = findings.worst([c.answer for c in chapters])
+    verdict = findings.worst([*(c.answer for c in chapters), *([findings.OPEN] if changed else [])])
     said = (
         _SAYS[verdict] if not left_out else f"{_SAYS_OF_PART[verdict]}; not looked at: {left_out}"
     )
+    if changed:
+        names = ", ".join(f"`{name}`" for name in changed)
+        said += f"; changed while the report was made: {names}"
     console.print(f"report in {out / INDEX}: {said}", soft_wrap=True)
     code = _CODES[verdict]
     if code is not Exit.OK:
@@ -189,11 +195,20 @@ def _swept(config: CellConfig | None, wanted: list[str], backend: BackendChoice)
     return tuple(dict.fromkeys(wanted)) or ("",)
 
 
-def _left_out(config: CellConfig | None, backend: BackendChoice) -> str:
+def _left_out(config: CellConfig | None, wanted: list[str], backend: BackendChoice) -> str:
     """What nobody looks at, as it was asked for; "": nothing."""
-    if config is None or not config.robots or backend is not BackendChoice.FAKE:
+    if config is None:
         return ""
-    return "the moves of the arms, and whether arms and devices keep apart (`--backend fake`)"
+    found = []
+    if config.robots and backend is BackendChoice.FAKE:
+        found.append(
+            "the moves of the arms, and whether arms and devices keep apart (`--backend fake`)"
+        )
+    others = [f"`{name}`" for name in config.layouts if wanted and name not in wanted]
+    if others:
+        what = "the geometry and runs" if _swept(config, wanted, backend) else "runs"
+        found.append(f"{what} of layout{'s' * (len(others) > 1)} {', '.join(others)} (`--layout`)")
+    return "; ".join(found)
 
 
 def _prepare(out: Path) -> None:
@@ -212,16 +227,16 @@ def _prepare(out: Path) -> None:
         _refuse(f"cannot write `{out}`: {os_reason(problem)}")
 
 
-def _subject(path: Path, config: CellConfig | None, inputs: Path | None) -> list[tuple[str, str]]:
-    """Names and hashes of the net, of what stands beside it as TOML, and of the data with which the cell begins."""
-    from pn2code.dossier import hashes
+def _subject(path: Path, config: CellConfig | None, inputs: Path | None) -> Subject:
+    """The net, what stands beside it as TOML or is used by it, the data of the cell, and the models of its arms."""
+    from pn2code.dossier.subject import Subject, used
 
     folder = path.parent if config is None else config.folder
-    found = [path, *path.parent.glob("*.toml")]
+    found = [path, *path.parent.glob("*.toml"), *used(path, config)]
     if config is not None:
         found += [config.path, *(config.input_path(i, inputs) for i in config.inputs)]
         found += [config.folder / s.file for s in config.sensors if s.file]
-    return hashes.of_files(folder, found)
+    return Subject.of(folder, found)
 
 
 def _write(
@@ -230,6 +245,7 @@ def _write(
     net: Path,
     out: Path,
     left_out: str,
+    changed: tuple[str, ...],
 ) -> None:
     """The first page, the table of traceability and the hashes."""
     from pn2code.base.whole_file import whole_file
@@ -267,6 +283,7 @@ def _write(
         drawn=traceability.drawn(out / NETS),
         elements=elements,
         left_out=left_out,
+        changed=changed,
     )
     with whole_file(out / INDEX) as beside:
         beside.write_text(index(chapters, facts), encoding="utf-8")

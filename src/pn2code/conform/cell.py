@@ -30,6 +30,7 @@ from pn2code.pipeline import Generated, generate
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import place_from_json, place_text
 from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.colour_json import JsonError
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import programs
@@ -253,7 +254,10 @@ class ProgramComparison:
         for given in self._begun.given:
             colset = self._partition.net.places[given.place].colset
             expected = game.marking.places[given.place]
-            found = place_from_json(colset, told.get(given.name, []))
+            try:
+                found = place_from_json(colset, told.get(given.name, []))
+            except JsonError as error:
+                return f"place `{given.name}` in the program: {error}"
             if found != expected:
                 is_, should = (place_text(game.colours, colset, x) for x in (found, expected))
                 return f"place `{given.name}` begins with {is_}, but its input file holds {should}"

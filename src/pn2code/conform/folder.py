@@ -30,12 +30,14 @@ _COMMENT = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\])*")', re.DOTALL)
 _TOKEN = re.compile(r'\w+|"(?:\\.|[^"\\])*"|\S')
 _UNASKED = (
     r"\bunion \{[^}]*\} s_marking ;",
-    r"\bs_fired_of \[[^;]*;",
-    r"\bs_arena \[[^;]*;",
+    r"\w+ s_fired_of \[[^;]*;",
+    r"\w+ s_arena \[[^;]*;",
+    r"\w+ s_\w+ \[",  # types of elements
     r"\. arena = [^,]*,",
     r"\. arena_size = [^,]*,",
     r"\. room = \{[^}]*\}",
     r"\. needs = \{[^}]*\}",
+    r"\. (?:room|needs) \.",
     r"\bdefine \w+|\bundef \w+",
 )
 """Patterns of tokens, with a blank between two."""
@@ -115,7 +117,7 @@ def _unasked(text: str) -> list[list[str]]:
     """What cell_config.c says of its memory and of what is linked, without comments and blanks.
 
     No state shows it: a timer that is never waited for fires some time later, memory that is never cleaned up is used
-    up some day, and a counter beyond the end of its array destroys what is stored behind.
+    up some day, and a counter beyond the end of its array, or wider than its elements, destroys what is stored behind.
     """
     code = " ".join(_TOKEN.findall(_COMMENT.sub(lambda m: m[1] or " ", text)))
     return [re.findall(pattern, code) for pattern in _UNASKED]

@@ -26,6 +26,7 @@ from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, place_from_json, place_text
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.colour_json import JsonError
 
 MOST_DEPTH = 4000
 """Saved states at a time, each of which is a process."""
@@ -290,7 +291,10 @@ class _Product:
 
     def _compare_places(self, now: float, expected: Marking, told: Mapping[str, object]) -> None:
         for p in self._own:
-            found = self._clock.tokens(place_from_json(p.colset, told[p.name]), now)
+            try:
+                found = self._clock.tokens(place_from_json(p.colset, told.get(p.name)), now)
+            except JsonError as error:  # its tables of names are others, too
+                raise _DeviationError(f"place `{p.name}` in the program: {error}") from None
             wanted = self._clock.tokens(expected.places[p.index], expected.time)
             if found != wanted:
                 is_, should = (place_text(self._game.colours, p.colset, x) for x in (found, wanted))

@@ -18,9 +18,14 @@ def sha256(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
+def name_of(folder: Path, path: Path) -> str:
+    """A path as seen from a folder."""
+    return Path(os.path.relpath(path, folder)).as_posix()
+
+
 def of_files(folder: Path, paths: Iterable[Path]) -> list[tuple[str, str]]:
     """Names as seen from a folder, sorted, with hashes; what is no file is passed over."""
-    files = {Path(os.path.relpath(p, folder)).as_posix(): p for p in paths if p.is_file()}
+    files = {name_of(folder, p): p for p in paths if p.is_file()}
     return [(name, sha256(files[name])) for name in sorted(files)]
 
 

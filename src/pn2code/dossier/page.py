@@ -28,6 +28,7 @@ class Facts:
         drawn: anchors in the drawing of the net, by ids.
         elements: of the net, with their code; (): no programs were made.
         left_out: what was not looked at, as it was asked for, and why.
+        changed: files of the cell that were changed while the report was made.
     """
 
     title: str
@@ -40,6 +41,7 @@ class Facts:
     drawn: Mapping[str, str]
     elements: Sequence[Element]
     left_out: str = ""
+    changed: Sequence[str] = ()
 
     @property
     def leads(self) -> dict[str, str]:
@@ -73,7 +75,7 @@ def index(chapters: Sequence[Chapter], facts: Facts) -> str:
         facts=facts,
         chapters=chapters,
         kinds=KINDS,
-        verdict=worst([c.answer for c in chapters]),
+        verdict=worst([*(c.answer for c in chapters), *([OPEN] if facts.changed else [])]),
         bad=_about(chapters, NO),
         unknown=_about(chapters, OPEN),
         assumed=assumed,

@@ -42,7 +42,7 @@ _LITTLE = 0.002
 _HALVINGS = 8
 _PATIENCE_S = 600.0
 _ROUNDS = 8
-_FORM = "1"
+_FORM = "2"
 """Of what is kept; another one is made anew."""
 
 
@@ -80,7 +80,8 @@ def pieces(path: Path, most: int) -> tuple[Array, ...]:
     out = _best(points, triangles, _divided(points, triangles, most))
     if kept is not None:
         with suppress(OSError):  # it is made again
-            write_whole(kept, json.dumps([p.tolist() for p in out]).encode())
+            body = json.dumps([p.tolist() for p in out]).encode()
+            write_whole(kept, hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
     return out
 
 
@@ -96,8 +97,12 @@ def _is_closed(points: Points, triangles: Triangles) -> bool:
 
 
 def _kept(path: Path) -> tuple[Array, ...]:
+    """What was kept; () if there is nothing, or it is not what was written: other pieces cover another thing."""
     try:
-        return tuple(np.array(p, float).reshape(-1, 3) for p in json.loads(path.read_bytes()))
+        head, _, body = path.read_bytes().partition(b"\n")
+        if hashlib.sha256(body).hexdigest().encode() != head:
+            return ()
+        return tuple(np.array(p, float).reshape(-1, 3) for p in json.loads(body))
     except (OSError, ValueError):
         return ()
 

@@ -5,8 +5,10 @@
 
 A program is named by the SHA-256 of all that goes into it: the generated C, the C runtime, the compiler's own version,
 its flags. It is built beside and renamed, so that processes that build the same at the same time do each other no harm,
-and a full disk leaves nothing behind. The runtime is kept as a library of its own. Without a private cache folder, or
-without room in it, everything is built in a temporary folder that goes with the process.
+and a full disk leaves nothing behind. Beside it is the SHA-256 of what was built (`.sum`): a program that has become
+another one, as a power failure may leave it, would answer anything, and is built again. The runtime is kept as a
+library of its own. Without a private cache folder, or without room in it, everything is built in a temporary folder
+that goes with the process.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
-from pn2code.base.private_folder import private_folder, without_folder
+from pn2code.base.private_folder import private_folder, without_folder, write_whole
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import c_flags, runtime
@@ -276,14 +278,14 @@ class _Builder:
 
     def is_there(self) -> bool:
         """Whether the program has been built."""
-        return os.access(self.program, os.X_OK)
+        return os.access(self.program, os.X_OK) and _is_sound(self.program)
 
     def kept(self, d: Diagnostics) -> Path | None:
         """The program from the cache, or built into it; None without room there, or after a diagnostic."""
         try:
             self.folder.mkdir(mode=0o700, exist_ok=True)
             if self.is_there():
-                os.utime(self.program)
+                _use(self.program)
                 return self.program
             found = self.built(d)
             if found is not None:
@@ -322,14 +324,14 @@ class _Builder:
             done = self._compiler(room, "-o", made.name, *parts, d=d)
             if not done:
                 return None
-            made.replace(self.program)
+            _keep(made, self.program)
         return self.program
 
     def _library(self, room: Path, d: Diagnostics) -> bool:
         """The runtime with the host's own parts."""
-        if self.library.exists():
+        if _is_sound(self.library):
             with suppress(OSError):
-                os.utime(self.library)
+                _use(self.library)
             return True
         # A build that is given up leaves what it has compiled to the next one, which gets further.
         done_before = self.folder / f"{_BUILDS}{self.library.stem}"
@@ -379,7 +381,7 @@ class _Builder:
                 Origin(self.host.name),
             )
             return False
-        made.replace(self.library)
+        _keep(made, self.library)
         return True
 
     def interrupted(self) -> bool:
@@ -437,12 +439,46 @@ class _Builder:
             with suppress(OSError):
                 used.append((path.stat().st_mtime, path))
         for _, path in sorted(used, reverse=True)[MOST_PROGRAMS:]:
-            with suppress(OSError):
-                path.unlink()
+            for each in (path, _sum_of(path)):
+                with suppress(OSError):
+                    each.unlink()
         for path in self.folder.glob(f"{_BUILDS}*"):
             with suppress(OSError):
                 if time.time() - path.stat().st_mtime > STALE_S:
                     shutil.rmtree(path, ignore_errors=True)
+
+
+def _sum_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.sum")
+
+
+def _is_sound(path: Path) -> bool:
+    """Whether a file is as it was kept."""
+    try:
+        return _sum_of(path).read_bytes() == _sum(path)
+    except OSError:
+        return False
+
+
+def _keep(made: Path, path: Path) -> None:
+    """Puts a file in its place; another process that keeps the same meanwhile makes it anew at the worst.
+
+    Raises:
+        OSError: there is no room.
+    """
+    write_whole(_sum_of(path), _sum(made))
+    made.replace(path)
+
+
+def _use(path: Path) -> None:
+    """Notes that a file was used."""
+    for each in (path, _sum_of(path)):
+        os.utime(each)
+
+
+def _sum(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
 def _put(room: Path, files: Sequence[OutputFile]) -> None:

@@ -14,6 +14,14 @@ from pn2code.emission.output import OutputFile
 NAME = "cell_config.c"
 EDITS = {
     "fewer counters": (r"s_fired_of\[\d+U\]", "s_fired_of[1U]"),
+    "narrower counters": (r"uint64_t s_fired_of", "uint32_t s_fired_of"),
+    "counters of whatever type": (r"uint64_t s_fired_of", "s_fired_of"),
+    "wider numbers of places": (r"uint32_t s_final", "uint64_t s_final"),
+    "units of memory": (r"max_align_t s_arena", "char s_arena"),
+    "fewer counters said later": (
+        r"\n    \.needs = ",
+        "\n    .room.transition_count = 9U,\n    .needs = ",
+    ),
     "less memory for lists": (r"s_arena\[\d+U /", "s_arena[64U /"),
     "a larger claim": (r"sizeof s_arena", "2U * sizeof s_arena"),
     "no marking": (r"net_marking_t marking;", "char marking;"),

@@ -128,10 +128,13 @@ def test_pieces_are_kept_and_always_the_same(
     monkeypatch.setattr(convex_pieces, "_divided", lambda *_: pytest.fail("divided once more"))
     pieces.cache_clear()
     assert all(map(np.array_equal, found[0], pieces(file, 4)))
-    kept.write_text("[[[0")
-    pieces.cache_clear()
-    with pytest.raises(pytest.fail.Exception):
-        pieces(file, 4)
+    whole = kept.read_text()
+    smaller = whole.replace("[[[", "[[[0.0625, 0.0, 0.0], [", 1)
+    for damaged in ("[[[0", whole[:-9], smaller, smaller.partition("\n")[2]):
+        kept.write_text(damaged)
+        pieces.cache_clear()
+        with pytest.raises(pytest.fail.Exception):
+            pieces(file, 4)
     pieces.cache_clear()
 
 

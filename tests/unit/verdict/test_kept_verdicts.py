@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -185,10 +186,16 @@ def test_generate_proves_again_when_a_used_file_changes(
 ) -> None:
     path = cell(tmp_path / "cell", net=NET.replace("  val MOVE", '  use "more.sml";\n  val MOVE'))
     calls: list[str] = []
+    digests = []
     for text in ("val most = 3;", "val most = 3;", "val most = 4;"):
         (path / "more.sml").write_text(text)
-        assert generated(path, kept(), monkeypatch, calls, Diagnostics()) is not None
+        made = generated(path, kept(), monkeypatch, calls, Diagnostics())
+        assert made is not None
+        digests.append(json.loads(made["manifest.json"])["digest"])
     assert len(calls) == 2
+    assert digests[0] == digests[1] != digests[2], (
+        "the programs are others, and so are their traces"
+    )
 
 
 def test_generate_keeps_nothing_of_a_net_with_random_numbers(
