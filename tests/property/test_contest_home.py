@@ -9,14 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from helpers.random_tables import Graph, random_branching
+from helpers.random_tables import Graph, random_branching, random_condition
 from helpers.table_families import FAMILIES, kanban
 from helpers.thorough import amount
 from pn2code.contest import home
 from pn2code.contest.engine import engine
-from pn2code.contest.examinations import asked
+from pn2code.contest.examinations import Asked, asked
+from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
 from pn2code.contest.home import is_home
 from pn2code.contest.portfolio import answers
+from pn2code.contest.rewriting import path
 from pn2code.contest.tables import Tables
 from pn2code.contest.temporal import Reach, Temporal
 from pn2code.diagnostics import Diagnostics
@@ -122,6 +124,94 @@ def test_formulas_say_the_same() -> None:
                 if question in t.wanted:
                     break
     assert changed > 10
+
+
+def with_a_beginning(draw: random.Random, tables: Tables) -> Tables:
+    """With a token that makes some steps once, the last of which brings another one."""
+    first, length = len(tables.initial), draw.randrange(1, 4)
+    initial = (*tables.initial, 1, *(0 for _ in range(length)))
+    pre = [*tables.pre, *({first + i: 1} for i in range(length))]
+    post: list[dict[int, int]] = [dict(a) for a in tables.post]
+    post += [{first + i + 1: 1} for i in range(length)]
+    if draw.random() < 0.5:
+        post[-1][draw.randrange(first)] = 1
+    names = {f"p{i}": (i,) for i in range(len(initial))}
+    moves = {f"t{i}": (i,) for i in range(len(pre))}
+    return Tables(initial, tuple(pre), tuple(post), names, moves)
+
+
+def begun(seeds: range) -> Iterator[tuple[random.Random, Tables, Graph]]:
+    """Nets of which some never come back to their initial marking."""
+    for draw, tables, graph in cases(seeds):
+        if draw.random() < 0.5:
+            yield draw, tables, graph
+        else:
+            other = with_a_beginning(draw, tables)
+            larger = Graph.of(other, 800)
+            if larger is not None:
+                yield draw, other, larger
+
+
+def nested(draw: random.Random, tables: Tables) -> Formula:
+    """A formula with EF p or AG p within another operator of time."""
+    inner = path(*draw.choice(("EF", "AG")), random_condition(draw, tables))
+    both = Op(draw.choice(("and", "or")), (inner, random_condition(draw, tables)))
+    return path(draw.choice("AE"), draw.choice("FGX"), both)
+
+
+def test_each_marking_leads_to_a_drained_one() -> None:
+    found = 0
+    for _, tables, graph in begun(range(2000, 2000 + amount(60, 400))):
+        f = home.drained(tables)
+        if f is not None:
+            found += 1
+            somewhere = path("E", "F", f)
+            assert graph.where(somewhere) == set(range(len(graph.markings))), (tables, f)
+    assert found > 20
+
+
+def test_what_is_drained_says_the_same_of_formulas() -> None:
+    """With some answers of the graph put in, in any order."""
+    decided = 0
+    for draw, tables, graph in begun(range(3000, 3000 + amount(80, 1500))):
+        drained = home.drained(tables)
+        if drained is None:
+            continue
+        for _ in range(6):
+            f = draw.choice((random_branching, nested))(draw, tables)
+            wanted = 0 in graph.where(f)
+            t = Temporal(tables, "ctl", f)
+            before = set(t.wanted)
+            t.learn_drained(drained)
+            new = set(t.wanted) - before
+            while True:
+                assert (0 in graph.where(t.formula)) == wanted, (tables, f, t.formula)
+                if not t.wanted or draw.random() < 0.1:
+                    break
+                question = draw.choice([q for q in t.wanted if q in new] or t.wanted)
+                is_reach = isinstance(question, Reach)
+                answer = graph.where(question.condition if is_reach else question.formula)
+                now = t.formula
+                t.learn(question, bool(answer) if is_reach else 0 in answer)
+                decided += question in new and t.formula != now
+                new.discard(question)
+                if question in t.wanted:
+                    break
+    assert decided > 20, decided
+
+
+def test_formulas_of_a_large_net_that_never_comes_back() -> None:
+    """Some 10^40 markings of Kanban, and a token that leaves its place for ever."""
+    tables = with_a_beginning(random.Random(1), kanban(10**6))
+    filled = next(p for p, n in enumerate(tables.initial) if n > 1)
+    few = AtMost(Tokens((f"p{filled}",)), Constant(999_999))
+    f = path("A", "G", path("E", "F", Op("not", (few,))))
+    assert not proved(tables)
+    with engine(Diagnostics()) as program:
+        assert program is not None
+        line = Asked("0", kind="ctl", formula=f)
+        (found,) = answers(program, tables, [line], seconds=SECONDS)
+    assert found.value is True
 
 
 def test_large_nets_are_live() -> None:

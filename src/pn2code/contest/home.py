@@ -8,6 +8,11 @@ marking a run of these alone comes to its end, in a marking in which none of the
 
 Then each reachable marking leads to every other one. What EF p and AG p say is the same in all of them, whatever p is;
 and a transition that can occur at all can always occur again.
+
+    drained(tables)             # a formula about one marking; None: nothing is known
+
+Whether it is a home marking or not: each reachable marking leads to one in which none of the draining transitions is
+enabled. If q holds in all reachable ones of these, EF q is true everywhere.
 """
 
 from __future__ import annotations
@@ -15,7 +20,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import inf
+from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING
 
 from pn2code.base.late import Late
@@ -23,6 +30,8 @@ from pn2code.contest import certificates, conditions
 from pn2code.contest.conditions import Condition, junction
 from pn2code.contest.engine import Answer, Said
 from pn2code.contest.equation import StateEquation
+from pn2code.contest.formulas import Fireable, Formula, Op
+from pn2code.contest.structural import EQUATION, Question
 from pn2code.contest.tables import Tables
 
 if TYPE_CHECKING:
@@ -34,6 +43,7 @@ else:
     sparse = Late("scipy.sparse")
 
 TECHNIQUE = "HOME_MARKING"
+DRAINED = "HOME_SPACE"
 MOST_TRANSITIONS = 10_000
 """Of a net with more nothing is said."""
 LONGEST_S = 20.0
@@ -41,6 +51,10 @@ _LARGEST_PART = 0.4
 """Of the time that is left; and so many seconds at most."""
 _SMALL = 1e-6
 _WEIGHTS_S = 2.0
+_EACH_S = 2.0
+"""For a question about drained markings."""
+_POLL_S = 0.1
+_LONGEST_STEM = 200
 _MARKED = 1e-3
 """The weights are to be small, as far as all transitions drain."""
 
@@ -53,26 +67,58 @@ class Home(threading.Thread):
     Args:
         tables: the net.
         number: of the question, for the answer; there is none if it is not known.
+        drained_number: of the answer that `drained` is known.
         said: where it goes.
         ends: when all ends, on the monotonic clock.
+
+    Attributes:
+        drained: a formula about one marking; each reachable marking leads to one in which it holds.
     """
 
-    def __init__(self, tables: Tables, number: int, said: Said, ends: float) -> None:
+    def __init__(
+        self, tables: Tables, number: int, drained_number: int, said: Said, ends: float
+    ) -> None:
         super().__init__(daemon=True)
         self.tables = tables
         self.number = number
+        self.drained_number = drained_number
+        self.drained: Formula | None = None
         self.said = said
         now = time.monotonic()
+        self.asked: SimpleQueue[Question] = SimpleQueue()
         self.until = now + min(LONGEST_S, _LARGEST_PART * (ends - now))
         self.is_over = threading.Event()
 
     def run(self) -> None:
         """Ask the question."""
         try:
+            self.drained = drained(self.tables)
+            if self.drained is not None and not self.is_over.is_set():
+                self.said.put(Answer(self.drained_number, True, True, DRAINED))
             if is_home(self.tables, self.until, self.is_over):
                 self.said.put(Answer(self.number, True, True, TECHNIQUE))
+            elif self.drained is not None:
+                self._exclude()
         except Exception as error:  # it belongs to the one who waits
             self.said.put(error)
+
+    def add(self, q: Question) -> None:
+        """A question about drained markings: whether the state equation excludes it."""
+        self.asked.put(q)
+
+    def _exclude(self) -> None:
+        equation = StateEquation(self.tables, self.is_over)
+        while not self.is_over.is_set():
+            left = self.until - time.monotonic()
+            try:
+                q = self.asked.get(timeout=max(0.0, min(_POLL_S, left)))
+            except Empty:
+                if left <= 0:
+                    return
+                continue
+            until = min(self.until, time.monotonic() + _EACH_S)
+            if not q.is_done and left > 0 and equation.excludes(q.condition, until):
+                self.said.put(Answer(q.number, False, True, f"{DRAINED} {EQUATION}"))
 
     def end(self) -> None:
         """Stop at the next step; a linear program may still be solved (`wait_for_solver`)."""
@@ -96,6 +142,34 @@ def is_home(tables: Tables, until: float, is_over: threading.Event | None = None
         as_empty = conditions.at_most(empty, 0)
         return equation.excludes(junction(True, [as_empty, junction(False, others)]), until)
     return False
+
+
+def drained(tables: Tables) -> Formula | None:
+    """That none of some transitions is enabled, which cannot occur for ever by themselves; None: there are none.
+
+    Of coloured transitions all bindings have to drain. What drains is looked for from the first marking on in which
+    there is a choice; any such set will do.
+    """
+    if not tables.pre or len(tables.pre) > MOST_TRANSITIONS or tables.at_first is not None:
+        return None
+    draining = set(drain(replace(tables, initial=_after_stem(tables))))
+    names = tuple(name for name, own in tables.transitions.items() if own and draining >= set(own))
+    return Op("not", (Fireable(names),)) if names else None
+
+
+def _after_stem(tables: Tables) -> tuple[int, ...]:
+    """The first marking in which there is a choice, or none after many steps."""
+    marking = list(tables.initial)
+    for _ in range(_LONGEST_STEM):
+        able = (t for t, a in enumerate(tables.pre) if all(marking[p] >= n for p, n in a.items()))
+        first = next(able, None)
+        if first is None or next(able, None) is not None:
+            break
+        for p, n in tables.pre[first].items():
+            marking[p] -= n
+        for p, n in tables.post[first].items():
+            marking[p] += n
+    return tuple(marking)
 
 
 def drain(tables: Tables) -> list[int]:

@@ -210,6 +210,7 @@ class _Portfolio:
                 self.places.append(_Place(line, part, which, hint))
         self.home: Home | None = None
         self.home_number = -1
+        self.drained_number = -2
         self.diagrams: dict[int, Diagrams] = {}
         self.fitting: dict[int, tuple[Tables, bool]] = {}
         self.structural: Structural | None = None
@@ -255,7 +256,12 @@ class _Portfolio:
             return
         place = _Place(line, part, 0, wanted=wanted)
         self.places.append(place)
-        if self.structural is not None:
+        if _is_drained(place):
+            if self.home is not None:
+                place.question = self._question(len(self.places) - 1)
+                if place.question is not None:
+                    self.home.add(place.question)
+        elif self.structural is not None:
             place.question = self._question(len(self.places) - 1)
             if place.question is not None:
                 self.structural.add(place.question)
@@ -323,7 +329,8 @@ class _Portfolio:
             if not line.is_done and line.result() is None
         )
         if of_use and not self.is_uncoloured:
-            self.home = Home(self.tables, self.home_number, self.said, self.ends)
+            numbers = self.home_number, self.drained_number
+            self.home = Home(self.tables, *numbers, self.said, self.ends)
             self.home.start()
 
     def end(self) -> None:
@@ -406,6 +413,14 @@ class _Portfolio:
                 self._ask_for(line)
             yield from self._finished(line)
 
+    def _note_drained(self) -> None:
+        """Each reachable marking leads to one in which a formula holds."""
+        assert self.home is not None and self.home.drained is not None
+        for line in self.lines:
+            if line.temporal is not None and not line.is_done:
+                line.temporal.learn_drained(self.home.drained)
+                self._ask_for(line)
+
     def _finished(self, line: _Line) -> Iterator[Result]:
         """The result of a line, if it has one now."""
         result = None if line.is_done else line.result()
@@ -419,6 +434,9 @@ class _Portfolio:
     def _noted(self, answer: Answer) -> Iterator[Result]:
         if answer.number == self.home_number:
             yield from self._at_home(answer)
+            return
+        if answer.number == self.drained_number:
+            self._note_drained()
             return
         place = self.places[answer.number]
         line = place.line
@@ -489,6 +507,7 @@ class _Portfolio:
             tasks: list[tuple[str, list[int]]] = []
             for method in self._methods(kinds, number, which):
                 mine = [n for n in open_ if self.places[n].part.kind in METHODS[method]]
+                mine = [n for n in mine if not _is_drained(self.places[n])]
                 if self.only or method in ("ctl", "ltl"):
                     mine = mine[(which + number) % 2 :: 2]  # the lanes have different orders
                 if mine:
@@ -629,6 +648,11 @@ class _Portfolio:
         if id(tables) not in self.fitting:
             self.fitting[id(tables)] = tables, tables.fits()
         return self.fitting[id(tables)][1]
+
+
+def _is_drained(place: _Place) -> bool:
+    """Whether a question is about drained markings: only equations and diagrams are asked, as searches see it all."""
+    return isinstance(place.wanted, Reach) and place.wanted.is_drained
 
 
 def _grace(seconds: float) -> float:

@@ -8,7 +8,7 @@
 A formula is a tree of `and`, `or` and `not` over formulas of paths, each of which is a question. What of it is about
 one marking is asked for as well: if it never has another value than in the initial marking, it is replaced by that. So
 is what a part of it follows from, or what follows from it, and each formula of paths without what stands within it
-(approximation.py).
+(approximation.py). EF q is true everywhere if q holds in all markings of a kind to which each marking leads (home.py).
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ MOST_LEAVES = 12
 """Parts about one marking that are asked for, of one formula."""
 MOST_BOUNDS = 8
 """And what follows from parts, or what they follow from."""
+MOST_DRAINED = 4
+"""And of those that may be the same everywhere since each marking leads to a drained one."""
 
 
 @frozen
@@ -36,10 +38,12 @@ class Reach:
     Args:
         condition: about one marking.
         is_side: it is not asked for itself: that it is not reachable would be of use.
+        is_drained: it is about drained markings (home.py), and looks at nearly all places.
     """
 
     condition: Formula
     is_side: bool = False
+    is_drained: bool = False
 
 
 @frozen
@@ -82,6 +86,7 @@ class Temporal:
         self._values: dict[Formula, bool] = {}
         self._initial: dict[Formula, bool] = {}
         self._is_home = False
+        self._drained: Formula | None = None
         self.formula = formula
         self.wanted: tuple[Wanted, ...] = ()
         self._simplify()
@@ -123,6 +128,12 @@ class Temporal:
             self._is_home = True
             self._simplify()
 
+    def learn_drained(self, drained: Formula) -> None:
+        """Each reachable marking leads to one in which that holds (home.py)."""
+        if self.kind == "ctl":
+            self._drained = drained
+            self._simplify()
+
     def _simplify(self) -> None:
         while True:
             before = self.formula
@@ -158,6 +169,9 @@ class Temporal:
             return rewriting.FALSE
         if self._is_nowhere(rewriting.negation(suffices(f))):
             return rewriting.TRUE
+        against = self._against(f)
+        if against is not None and self._is_nowhere(against):
+            return Truth(f.operator == "E")
         if f.operator in "AE" and self.kind == "ctl":
             (path,) = f.parts
             assert isinstance(path, Op)
@@ -168,6 +182,20 @@ class Temporal:
             if f.operator in "AE" and isinstance(parts[0], Truth)
             else Op(f.operator, parts)
         )
+
+    def _against(self, f: Formula) -> Formula | None:
+        """If this, about one marking, holds nowhere, EF p is true everywhere, or AG p false; None: of another formula.
+
+        Each marking leads to a drained one: then p, or the opposite, holds in all of these.
+        """
+        if self._drained is None:
+            return None
+        match f:
+            case Op("E", (Op("F", (p,)),)):
+                return rewriting.joined("and", [self._drained, rewriting.negation(suffices(p))])
+            case Op("A", (Op("G", (p,)),)):
+                return rewriting.joined("and", [self._drained, follows(p)])
+        return None
 
     def _is_nowhere(self, f: Formula) -> bool:
         """Whether it is known that a formula about one marking never holds."""
@@ -222,12 +250,24 @@ class Temporal:
             for leaf in list(found)[:MOST_LEAVES]
         ]
         sides += list(dict.fromkeys(w for n in of_paths for w in self._bounds(n)))[:MOST_BOUNDS]
+        sides += list(dict.fromkeys(w for n in of_paths for w in self._drained_away(n)))[
+            :MOST_DRAINED
+        ]
         for node in filter(is_nested, of_paths):
             for is_upper in (True, False):
                 sides += map(_side, _nodes(self._outline(node, is_upper=is_upper)))
         for wanted in sides:
             if _question(_formula(wanted)) not in asked and _formula(wanted) not in self._values:
                 yield wanted
+
+    def _drained_away(self, f: Formula) -> Iterator[Reach]:
+        """Whether what speaks against EF p, or AG p, as the same everywhere is somewhere."""
+        for part in () if self._is_home else _of_home(f):
+            against = self._against(part)
+            if against is None or isinstance(against, Truth) or against == self._drained:
+                continue
+            if not self._holds(against):
+                yield Reach(against, is_side=True, is_drained=True)
 
     def _bounds(self, f: Formula) -> Iterator[Reach]:
         """Whether what a part implies, or the opposite of what implies it, is somewhere."""
