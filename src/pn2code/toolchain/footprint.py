@@ -6,8 +6,9 @@ The supervisor's own sources are compiled once more, as its Makefile compiles th
 function takes and what it calls (`-fcallgraph-info=su`). From that comes the deepest stack, and that no function can
 call itself, directly or through others. The runtime's functions that walk values (`WALKERS`) can, once for each level
 of a value; how many levels there are at most is in `manifest.json`, and so often their stack counts. Of a recursive
-datatype there is no such number: then this is recursion like any other. Calls through pointers lead to the functions that `INDIRECT` names for the
-caller; a caller without a rule, or a function whose address is taken and that no rule names, is an error.
+datatype there is no such number: then this is recursion like any other. Calls through pointers lead to the functions
+that `INDIRECT` names for the caller; a caller without a rule, or a function whose address is taken and that no rule
+names, is an error.
 """
 
 from __future__ import annotations
@@ -278,7 +279,9 @@ class Footprint:
 
     @property
     def is_good(self) -> bool:
-        """No recursion but once a level of a value, no heap, a stack that does not depend on values, no function that is too long."""
+        """No recursion but once a level of a value, no heap, a stack that does not depend on values, no function that is
+        too long.
+        """
         return not (self.cycle or self.unbounded or self.heap or self.long)
 
     def report(self) -> str:
