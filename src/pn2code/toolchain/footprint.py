@@ -279,8 +279,8 @@ class Footprint:
 
     @property
     def is_good(self) -> bool:
-        """No recursion but once a level of a value, no heap, a stack that does not depend on values, no function that is
-        too long.
+        """No recursion but once a level of a value, no heap, a stack that is the same for all values, no function that
+        is too long.
         """
         return not (self.cycle or self.unbounded or self.heap or self.long)
 
