@@ -98,5 +98,5 @@ def test_a_membership_test_of_a_subset_that_raises_is_an_error_of_the_net() -> N
             trans T
               in A : k
         """)
-    with pytest.raises(GameError, match="the colour set of `k` raised `Div`"):
+    with pytest.raises(GameError, match="the colour set of `k` raised the exception `Div`"):
         Game(net).enabled()
