@@ -260,7 +260,9 @@ class Context:
     def refuse_unknown_rows(self) -> None:
         """After `generalise`: as in SML, no later use tells which record a function takes."""
         for row, span in self.open_records:
-            if any(prune(row) is unknown for unknown in self.unifier.unknown_rows):
+            if any(prune(row) is unknown for unknown in self.unifier.unknown_rows) and not (
+                self.tainted or self.errors
+            ):
                 self._row_not_known(span)
         self.unifier.unknown_rows.clear()
 
