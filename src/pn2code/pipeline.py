@@ -25,7 +25,7 @@ from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.division import divided
-from pn2code.emission import arena_size, manifest, runtime
+from pn2code.emission import arena_size, manifest, needs, runtime
 from pn2code.emission import c as emit_c
 from pn2code.emission import supervisor as emit_supervisor
 from pn2code.emission import tdl as emit_tdl
@@ -186,7 +186,8 @@ def generate(
         *runtime.emit("supervisor", "simulate", "exercise"),
         *_inputs(config, inputs),
     ]
-    files.append(manifest.emit(partition, files, digest=digest, version=version))
+    nesting = needs.nesting(deployed)
+    files.append(manifest.emit(partition, files, digest=digest, version=version, nesting=nesting))
     return Generated(
         files=tuple(sorted(files, key=lambda f: f.path)),
         partition=partition,

@@ -495,3 +495,21 @@ def test_a_generated_file_is_missing(cell: Path, tmp_path: Path) -> None:
     done = run("conform", cell, "--generated", folder)
     assert done.exit_code == 1
     assert "conform-files" in done.output and "robot1.tdl" in done.output
+
+
+def test_a_net_whose_runs_raise_an_exception_has_no_whole_state_space(tmp_path: Path) -> None:
+    (tmp_path / "n.cpn").write_bytes(
+        cpn("""
+        net N
+          standard
+          var n: INT;
+          page Top
+            place A : INT = 1`3
+            trans T
+              in A : n
+              out A : if n > 0 then n - 1 else hd []
+        """)
+    )
+    found = run("conform", tmp_path / "n.cpn")
+    assert found.exit_code == 3, found.output
+    assert "(the state space ends with an error of the net, see `verify`)" in found.output

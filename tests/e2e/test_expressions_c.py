@@ -113,7 +113,7 @@ let val n = 0.0/0.0 in (PART.lt (n, 1.0), PART.lt (1.0, n)) end
 let val n = 0.0/0.0 in sort REALP.lt [(n,2),(1.0,1),(n,1)] end
 """
 LARGE = r"""
-Real.fmt (StringCvt.FIX (SOME 1110)) 5E~324
+Real.fmt (StringCvt.FIX (SOME 1110)) Real.minPos
 Real.fmt (StringCvt.SCI (SOME 1110)) 1.5E~300
 Real.fmt (StringCvt.FIX (SOME 2000)) ~1.5
 Real.fmt (StringCvt.GEN (SOME 2000)) 0.1

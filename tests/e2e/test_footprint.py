@@ -7,7 +7,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from helpers import list_cell
+from pn2code.cli.main import app
 from pn2code.toolchain import footprint
 from pn2code.toolchain.footprint import FootprintError, Graph, long_functions, read_graph
 
@@ -54,6 +57,49 @@ def test_recursion_is_found() -> None:
     assert read_graph(NOTES, frozenset(), linked).deepest("main") == (48, ("main", "x.c:walk"))
     assert set(read_graph(again, frozenset(), linked).cycle()) == {"main", "x.c:walk"}
     assert Graph({"f": frozenset("f")}, {"f": 1}, ()).cycle() == ("f",)
+
+
+WALKS = """
+node: { title: "main" label: "main\\nx.c:1:1\\n16 bytes (static)" }
+node: { title: "pn_type.c:compare" label: "compare\\nx.c:2:1\\n32 bytes (static)" }
+node: { title: "pn_type.c:compare_parts" label: "compare_parts\\nx.c:3:1\\n8 bytes (static)" }
+node: { title: "order" label: "order\\nx.c:4:1\\n4 bytes (static)" }
+edge: { sourcename: "main" targetname: "pn_type.c:compare" }
+edge: { sourcename: "pn_type.c:compare" targetname: "pn_type.c:compare_parts" }
+edge: { sourcename: "pn_type.c:compare_parts" targetname: "pn_type.c:compare" }
+edge: { sourcename: "pn_type.c:compare_parts" targetname: "order" }
+"""
+
+
+def test_what_walks_values_counts_once_a_level() -> None:
+    linked = frozenset(("main", "compare", "compare_parts", "order"))
+    walk = "compare + compare_parts (at most 3 times)"
+
+    found = read_graph(WALKS, frozenset(), linked).with_walks(3)
+
+    assert (found.cycle(), found.walks) == ((), (walk,))
+    assert found.deepest("main") == (16 + 3 * (32 + 8) + 4, ("main", walk, "order"))
+    of_net = WALKS.replace("pn_type.c:", "net.c:")
+    back = WALKS + 'edge: { sourcename: "order" targetname: "pn_type.c:compare" }'
+    for notes, levels in ((of_net, 3), (back, 3), (WALKS, 0)):
+        again = read_graph(notes, frozenset(), linked).with_walks(levels)
+        assert again.cycle() and not again.walks
+
+
+def test_a_cell_whose_messages_are_lists(tmp_path: Path) -> None:
+    """Lists of records, and records with lists in them: its values have three levels."""
+    if shutil.which("gcc") is None or shutil.which("objdump") is None:
+        pytest.skip("the call graph needs gcc and binutils")
+    cell = list_cell.write(tmp_path / "cell")
+    folder = tmp_path / "program"
+    made = CliRunner().invoke(app, ["generate", str(cell), "-o", str(folder)])
+    assert made.exit_code == 0, made.output
+    subprocess.run(["make", "-s", "CC=gcc", "supervisor"], cwd=folder, check=True)
+
+    found = footprint.measure(folder)
+
+    assert found.is_good and found.stack > 1000, found.report()
+    assert "pn_mkstr (at most 3 times)" in found.walks
 
 
 def test_pointers_that_lead_nobody_knows_where_are_an_error() -> None:

@@ -29,6 +29,7 @@ _RULES: tuple[tuple[str, str, str, str], ...] = (
     ("raised", "*", r"\b(Word32|LargeWord)\.toInt\b.*\.fromInt\b", "the engine's compiler makes nothing of toInt after fromInt"),
     ("*", "*", r"\bReal\.(to|from)ManExp\b", "exponents of zero and of what is not finite"),
     ("value", "value", r"\bReal\.(split|realMod)\b.*(minPos|minNormalPos|E~)", "what is behind the point of the least reals is 0.0 in the engine"),
+    ("value", "value", r"\bMath\.(atan|asin|sinh|tanh) \(?~?0\.0\b", "the sign of a zero"),
     ("value", "value", r"\bReal\.rem\b", "remainders of what is very different in size"),
     ("*", "*", r"\bMath\.\w+\b.*(1E10|10737|maxFinite|minPos|posInf|negInf)|\bMath\.\w+\b.*nan", "functions of the processor outside of its range"),
     ("limit", "*", r"\b(Char|Int|Real|IntInf|Bool|Word|StringCvt)\.(scan|scanString|splitl|takel|dropl|skipWS)\b",

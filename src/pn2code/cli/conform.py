@@ -177,9 +177,12 @@ def _core(core: CoreReport) -> str:
             f"net.c         agrees with the token game in all {core.nodes:,} reachable markings "
             f"and {core.arcs:,} occurrences{apart}"
         )
+    why = "the state space is larger than the limit"
+    if core.raises:
+        why = "the state space ends with an error of the net, see `verify`"
     return (
         f"net.c         agrees with the token game in a sample: {core.walks} random runs, "
-        f"{core.steps:,} occurrences (the state space is larger than the limit)"
+        f"{core.steps:,} occurrences ({why})"
     )
 
 

@@ -48,6 +48,7 @@ class CoreReport:
             where nodes that differ in time alone are one.
         deviation: in words; None: there is none.
         given_up: what the token game did not evaluate to its end; "": nothing.
+        raises: whether there is no whole state space because the net ends with an error in it.
     """
 
     nodes: int
@@ -57,6 +58,7 @@ class CoreReport:
     steps: int = 0
     deviation: str | None = None
     given_up: str = ""
+    raises: bool = False
 
 
 class _Differs(Exception):  # noqa: N818
@@ -95,7 +97,9 @@ def compare(
         if found is None:
             return None
         if not found.complete or not graph.exists():
-            return _sampled(net, storage, walks, Path(name), d)
+            sampled = _sampled(net, storage, walks, Path(name), d)
+            raises = found.error is not None
+            return sampled and replace(sampled, raises=raises)
         whole = _Whole(net, storage, clock).compared(graph, say)
         if whole.deviation or whole.given_up or not clock.is_relative:
             return whole

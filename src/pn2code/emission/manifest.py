@@ -15,9 +15,14 @@ NAME = "manifest.json"
 
 
 def emit(
-    partition: Partition, files: Iterable[OutputFile], *, digest: str, version: str
+    partition: Partition,
+    files: Iterable[OutputFile],
+    *,
+    digest: str,
+    version: str,
+    nesting: int,
 ) -> OutputFile:
-    """The manifest of the other files."""
+    """The manifest of the other files; with how deeply values are nested (`pn2code.emission.needs`)."""
     files = sorted(files, key=lambda f: f.path)
     net = partition.net
     data = {
@@ -25,6 +30,7 @@ def emit(
         "source": Path(net.file).name,
         "source_sha256": net.sha256,
         "digest": digest,
+        "nesting": nesting,
         "owners": [{"name": o.name, "instance": o.instance} for o in partition.owners],
         "channels": [
             {

@@ -3,6 +3,7 @@
 needs = of(net, is_cell=True)
 needs.next_time                       # "pn_next_time"; "NULL": the net has no time
 needs.flags                           # ("-DPN_FLAT_TYPES",): no list, no union, no reference
+nesting(net)                          # 3: a value has at most three levels
 """
 
 from __future__ import annotations
@@ -14,6 +15,9 @@ SIDE = "supervisor"
 """The supervisor's name among the owners of a net, and in the shared directory."""
 _NESTED = frozenset({Rep.LIST, Rep.UNION, Rep.REF})
 _NONE = "NULL"
+
+UNLIMITED = 0
+"""The nesting of a net with a recursive datatype."""
 
 
 @frozen
@@ -73,3 +77,26 @@ def of(net: NetIR, *, is_cell: bool) -> Needs:
             *(() if is_packed else ("-DPN_ARRAYS_ONLY",)),
         ),
     )
+
+
+def nesting(net: NetIR) -> int:
+    """How deeply the values of a net are nested at most, as the runtime's functions walk them: 1 of an integer, 3 of a
+    list of records of integers; `UNLIMITED` where a datatype contains itself."""
+    of_name = {d.name: d for d in net.descriptors}
+    known: dict[str, int] = {}
+    waiting = [(name, False) for name in (*net.used.tables, *net.used.further_tables)]
+    above: set[str] = set()
+    while waiting:
+        name, is_left = waiting.pop()
+        found = of_name[name]
+        parts = [part for _, part in found.fields if part] + [found.element] * bool(found.element)
+        if is_left:
+            above.remove(name)
+            known[name] = 1 + max((known[part] for part in parts), default=0)
+        elif name in above:
+            return UNLIMITED
+        elif name not in known:
+            above.add(name)
+            waiting.append((name, True))
+            waiting += [(part, False) for part in parts]
+    return max(known.values(), default=1)

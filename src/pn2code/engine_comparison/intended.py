@@ -12,8 +12,8 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`intinf with 1..3`** is refused by the engine, which expects bounds of type `int`; here it is accepted, with a warning.
 * **An `ml` declaration that is empty, or only a comment**, is refused by the engine; here it gives a warning.
 * **A negative zero** makes a state of its own: the two zeros are equal, and one token of a place, but an inscription can tell them apart
-  (`1.0 / x`, `Real.toString x`), so that markings which differ in the sign are two nodes. The engine has one for both. `Math.atan2` heeds the signs
-  of zeros, in the engine it does not.
+  (`1.0 / x`, `Real.toString x`), so that markings which differ in the sign are two nodes. The engine has one for both. `Math.atan2`, `asin`, `atan`,
+  `sinh` and `tanh` heed the signs of zeros; in the engine `Math.atan 0.0` is always `~0.0`, and of the others none is.
 * **`Math.pow`, `exp`, `sinh`, `cosh`, `tanh`** are exact to some ten digits in SML/NJ (`Math.pow (3.0, ~1.0)` is 0.333333333353), and are not numbers
   outside the range of the processor (`Math.tanh 1E10`, `Math.sin 1E300`); here they are those of C. So are `Real.rem` of numbers of very different size,
   `Real.toManExp` and `fromManExp` of zero and of non-finite numbers, and `Real.toLargeInt` of zero.
@@ -54,6 +54,6 @@ Inscriptions and expressions also differ in the following, each on purpose:
   each function is refused by its name (`unsupported-function`). So is `IOUtil`, which changes where the standard streams go. Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
   run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets and hash tables are there.
 * **`RealOrderStats`** leaves its array as it is; the engine's sorts a part of it, by random numbers, so that `UnivariateStats.averageDeviation` may have another last digit after `median`.
-* **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0. A literal below 2.2E~308 is `BadReal` there.
+* **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0.
 * **Time zones**: dates are those of UTC.
 """

@@ -4,12 +4,16 @@
 
 The supervisor's own sources are compiled once more, as its Makefile compiles them, and gcc writes the stack that each
 function takes and what it calls (`-fcallgraph-info=su`). From that comes the deepest stack, and that no function can
-call itself, directly or through others. Calls through pointers lead to the functions that `INDIRECT` names for the
-caller; a caller without a rule, or a function whose address is taken and that no rule names, is an error.
+call itself, directly or through others. The runtime's functions that walk values (`WALKERS`) can, once for each level
+of a value; how many levels there are at most is in `manifest.json`, and so often their stack counts. Of a recursive
+datatype there is no such number: then this is recursion like any other. Calls through pointers lead to the functions
+that `INDIRECT` names for the caller; a caller without a rule, or a function whose address is taken and that no rule
+names, is an error.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import subprocess
@@ -41,6 +45,11 @@ INDIRECT: Mapping[str, str] = {
     r"read_channels?|clear_consumed|run_\w+|stop_\w+": r"files_\w+",
 }
 """Who calls through pointers, and which functions: names of functions, as regular expressions."""
+WALKERS = re.compile(
+    r"(pn_(mkstr|json|is_legal|narrow|relocate|type_\w+|encode\w*|decode\w*)"
+    r"|(mkstr|json|compare|is_legal|narrow|relocate|encode|decode)_(part|record|list|union|ref)s?|compare)"
+)
+"""Functions of the runtime's `value` that call themselves only with a type that the one they have got is made of."""
 STARTED_ELSEWHERE = frozenset(("on_signal", "main"))
 """Called by the system, not by the program."""
 
@@ -62,11 +71,37 @@ class Graph:
         calls: by function, the functions that it calls, of the program or of the C library.
         stack: by function of the program, bytes.
         unbounded: functions whose stack depends on a value.
+        walks: rings of functions that walk values, each drawn together to one with this name.
     """
 
     calls: Mapping[str, frozenset[str]]
     stack: Mapping[str, int]
     unbounded: tuple[str, ...]
+    walks: tuple[str, ...] = ()
+
+    def with_walks(self, levels: int) -> Graph:
+        """With the rings of `WALKERS` drawn together, each of which takes its stack once a level; 0: as it is."""
+        if levels == 0:
+            return self
+        below = {name: self.reached(name, inside=False) for name in self.calls}
+        ring_of: dict[str, str] = {}
+        rings: set[str] = set()
+        for name in sorted(self.calls):
+            ring = tuple(sorted(n for n in below[name] if name in below.get(n, ())))
+            if ring and all(map(_is_walker, ring)):
+                title = f"{' + '.join(map(_plain, ring))} (at most {levels} times)"
+                ring_of[name] = title
+                rings.add(title)
+        calls: dict[str, set[str]] = {}
+        stack: dict[str, int] = {}
+        for name, called in self.calls.items():
+            title = ring_of.get(name, name)
+            known = {ring_of.get(n, n) for n in called} - ({title} if title in rings else set())
+            calls.setdefault(title, set()).update(known)
+            times = levels if title in rings else 1
+            stack[title] = stack.get(title, 0) + times * self.stack.get(name, 0)
+        walks = tuple(sorted(rings))
+        return Graph({k: frozenset(v) for k, v in calls.items()}, stack, self.unbounded, walks)
 
     def cycle(self) -> tuple[str, ...]:
         """Functions that call each other in a ring; () if there is none."""
@@ -101,10 +136,10 @@ class Graph:
 
         return visit(start)
 
-    def reached(self, start: str) -> frozenset[str]:
-        """All that a function calls, at last."""
+    def reached(self, start: str, *, inside: bool = True) -> frozenset[str]:
+        """All that a function calls, at last; itself only if it does, where that is wanted (not `inside`)."""
         found: set[str] = set()
-        waiting = [start]
+        waiting = [start] if inside else list(self.calls.get(start, ()))
         while waiting:
             name = waiting.pop()
             if name not in found:
@@ -167,6 +202,11 @@ def _name(title: str) -> str:
     return f"{Path(file).name}:{name}" if file else name
 
 
+def _is_walker(name: str) -> bool:
+    """Whether it is one of `WALKERS`; a function of the net may have such a name, but stands in another file."""
+    return name.startswith("pn_") and WALKERS.fullmatch(_plain(name)) is not None
+
+
 def _plain(name: str) -> str:
     """As it is written in C."""
     return name.rpartition(":")[2].split(".")[0]
@@ -226,6 +266,7 @@ class Footprint:
     path: tuple[str, ...]
     functions: int
     cycle: tuple[str, ...]
+    walks: tuple[str, ...]
     unbounded: tuple[str, ...]
     heap: tuple[str, ...]
     library: tuple[str, ...]
@@ -238,7 +279,9 @@ class Footprint:
 
     @property
     def is_good(self) -> bool:
-        """No recursion, no heap, a stack that does not depend on values, no function that is too long."""
+        """No recursion but once a level of a value, no heap, a stack that is the same for all values, no function that
+        is too long.
+        """
         return not (self.cycle or self.unbounded or self.heap or self.long)
 
     def report(self) -> str:
@@ -258,6 +301,7 @@ class Footprint:
                 f"  .bss                      {self.bss:>12,}, of which arena {self.arena:,} (see cell_config.c)",
                 f"  deepest stack             {self.stack:>12,}: {' > '.join(self.path)}",
                 f"recursion                   {listed(self.cycle)}",
+                f"  once a level of a value   {listed(self.walks)}",
                 f"stack that depends on data  {listed(self.unbounded)}",
                 f"heap (malloc, free, ...)    {listed(self.heap)}",
                 f"functions over {MOST_LINES} lines     {listed(tuple(f'{n} ({k})' for n, k in self.long))}",
@@ -290,7 +334,10 @@ def measure(folder: Path) -> Footprint:
     symbols = [line.split() for line in _said(folder, "nm", "supervisor").splitlines()]
     linked = frozenset(_plain(s[2]) for s in symbols if len(s) == 3 and s[1] in "tT")
     used = sorted(s[1].split("@")[0] for s in symbols if len(s) == 2 and s[0] == "U")
+    manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     graph = read_graph("\n".join(notes), frozenset(addresses), linked)
+    functions = len(graph.stack)
+    graph = graph.with_walks(int(manifest.get("nesting", 0)))
     cycle = graph.cycle()
     stack, path = (0, ()) if cycle else graph.deepest("main")
     sections = {
@@ -307,8 +354,9 @@ def measure(folder: Path) -> Footprint:
         arena=_arena(_said(folder, "nm", "-S", "supervisor")),
         stack=stack,
         path=path,
-        functions=len(graph.stack),
+        functions=functions,
         cycle=cycle,
+        walks=graph.walks,
         unbounded=graph.unbounded,
         heap=tuple(n for n in used if n in HEAP),
         library=tuple(n for n in used if n not in HEAP),

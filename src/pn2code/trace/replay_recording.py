@@ -356,11 +356,10 @@ class _Follower:
         enabling = self.game.enabling
         found = False
         if self.certain(state.unknown, t):
-            wanted = {name: _squeezed(text) for name, text in step.binding.items()}
 
             def fits(symbol: Symbol, value: Value) -> bool:
                 text = variable_text(self.game.colours, symbol, value)
-                return _squeezed(text) == wanted.get(symbol.name)
+                return text == step.binding.get(symbol.name)
 
             for binding in enabling.enabled(t, state.marking, accept=fits):
                 demands = enabling.demands(t, binding)
@@ -518,7 +517,7 @@ class _Follower:
         found: dict[Symbol, Value] = {}
         for s in t.code.outputs:
             text = variable_text(self.game.colours, s, ours[s]) if s in ours else None
-            if text is not None and _squeezed(text) == _squeezed(step.binding[s.name]):
+            if text == step.binding[s.name]:
                 found[s] = ours[s]
             elif vague:
                 found[s] = self.read_one(s, step)
@@ -535,11 +534,6 @@ def _time(text: str, real: bool) -> int | float | None:
         return float(text.replace("~", "-")) if real else int(text.replace("~", "-"))
     except ValueError:
         return None
-
-
-def _squeezed(text: str) -> str:
-    """For comparison: recordings may have lost blanks and line breaks inside strings."""
-    return "".join(text.replace("\\n", "").split())
 
 
 def _line(text: str) -> str:

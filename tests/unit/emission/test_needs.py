@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.emission import needs
-from pn2code.emission.needs import Needs
+from pn2code.emission.needs import UNLIMITED, Needs, nesting
 from pn2code.lowering.nets.packing import Packing
 
 NOTHING = Needs(
@@ -28,6 +30,33 @@ def test_a_net_that_needs_nothing() -> None:
 
 def test_what_is_declared_and_not_used_needs_nothing() -> None:
     assert needed("colset LIST = list INT;", "fun first (x :: _) = x", "place A : INT") == NOTHING
+
+
+@pytest.mark.parametrize(
+    ("colset", "levels"),
+    [
+        ("colset C = int;", 1),
+        ("colset C = product INT * BOOL;", 2),
+        ("colset L = list INT; colset C = product L * INT;", 3),
+        ("colset R = record a : INT * b : STRING; colset L = list R; colset C = list L;", 4),
+        ("colset L = list INT; colset C = union a : L + b + c : INT;", 3),
+    ],
+)
+def test_how_deeply_values_are_nested(colset: str, levels: int) -> None:
+    assert levels_of(colset, "place A : C") == levels
+
+
+def levels_of(*lines: str) -> int:
+    text = "".join(f"  {line}\n" for line in lines)
+    net, d = lowered(flat(f"net Cell\n  standard\n{text}"))
+    assert net is not None, d.errors
+    return nesting(net)
+
+
+def test_a_datatype_that_contains_itself_has_no_limit() -> None:
+    tree = ("datatype tree = leaf | node of tree * tree;", "globref g = leaf;")
+    used = ("place A : INT = 1`1", "trans T", "  out A : if !g = leaf then 1 else 2")
+    assert levels_of(*tree, *used) == UNLIMITED
 
 
 def test_a_cell() -> None:

@@ -30,6 +30,8 @@ from pn2code.ml.core.types import INT
         ("1`r @++ time()", "R", "timed multi-set Time.@++(Ms.`(1, r), Time.time())"),
         ("1`r@7", "R", "timed multi-set Ms.`(1, Time.@(r, 7))"),
         ("r@7", "R", "timed token Time.@(r, 7)"),
+        ("(r@7)", "R", "timed token Time.@(r, 7)"),
+        ("(r) @+ (3)", "R", "timed token Time.token@+(r, 3)"),
         ("1`r@+1 +++ 1`r@+2", "R", "timed multi-set Time.+++(Time.@+(Ms.`(1, r), 1), Time.@+(Ms.`(1, r), 2))"),
         ("if b then 1`r@+3 else empty", "R", "timed multi-set if b then Time.@+(Ms.`(1, r), 3) else []"),
         ("(1`r @+ 3)", "R", "timed multi-set Time.@+(Ms.`(1, r), 3)"),
@@ -105,6 +107,14 @@ def test_errors(text: str, colset: str, expected: str) -> None:
     m = Ml()
     assert m.inscription(text, colset) is None
     assert m.messages() == [expected]
+
+
+@pytest.mark.parametrize("text", ["(r @+ 3)", "((r @+ 3))", "(r @++ time ())", "(* c *) (r@+3)"])
+def test_one_token_with_a_delay_has_no_parentheses(text: str) -> None:
+    """CPN Tools takes it for a multi-set, which it is not; `(r@7)` it takes."""
+    m = Ml()
+    assert m.inscription(text, "R") is None
+    assert "one token with a delay in parentheses" in m.only().message
 
 
 def test_an_error_tells_the_colour_set_of_the_place() -> None:

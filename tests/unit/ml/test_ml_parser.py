@@ -121,6 +121,8 @@ def test_literal_values() -> None:
         (r'"\q"', r"lexical-error | `\q` is not an escape of CPN ML | \q"),
         ('#"ab"', 'lexical-error | a character literal holds exactly one character | #"ab"'),
         ("1e999", "lexical-error | real number `1e999` is too large | 1e999"),
+        ("~1e~308", "lexical-error | real number `~1e~308` is too small | ~1e~308"),
+        ("0.00E~400 + 0.1E~400", "lexical-error | real number `0.1E~400` is too small | 0.1E~400"),
         ("~0w5", "lexical-error | a word literal has no sign | ~0w5"),
     ],
 )

@@ -84,3 +84,19 @@ def test_references_steps_time_and_chance_are_not_remembered(seed: int) -> None:
 def test_random_nets(seed: int) -> None:
     with contextlib.suppress(GameError):  # of the net
         walk(random_net(Random(seed)), seed, 15)
+
+
+def test_a_membership_test_of_a_subset_that_raises_is_an_error_of_the_net() -> None:
+    net = flat("""
+        net Odd
+          standard
+          fun odd n = n mod 0 = 1;
+          colset ODD = subset INT by odd;
+          var k : ODD;
+          page Top
+            place A : INT = 1`3
+            trans T
+              in A : k
+        """)
+    with pytest.raises(GameError, match="the colour set of `k` raised the exception `Div`"):
+        Game(net).enabled()

@@ -82,6 +82,29 @@ def test_steps_that_are_refused(steps: Steps, why: str) -> None:
     assert why in found.why
 
 
+BLANKS = r"""
+    net Blanks
+      standard
+      colset S = string;
+      var s, r: S;
+      page Top
+        place A : S = 1`"a b" ++ 1`"c\\nd" ++ 1`"e\nf"
+        trans T
+          in A : s
+          code input (s); output (r); action (s ^ " !")
+"""
+
+
+def test_blanks_inside_strings_are_part_of_a_value() -> None:
+    """The engine writes values as `mkstr` does: two that differ only in blanks are two."""
+    for text in ("a b", "c\\nd", "e\nf"):
+        good = {"s": f'"{text}"', "r": f'"{text} !"'}
+        assert run(BLANKS, [("0", "T", good)]).ok
+        for wrong in ({"s": '"ab"'}, {"s": '"cd"'}, {"s": '"ef"'}, {"r": f'"{text}!"'}):
+            found = run(BLANKS, [("0", "T", {**good, **wrong})])
+            assert (found.ok, found.steps) == (False, 0), wrong
+
+
 def test_the_final_marking_must_be_the_same() -> None:
     steps: Steps = [("0", "Send_Packet", {"n": "2", "s": '"c"'})]
     found = run(PLAIN, steps, {"B": "1`3"})

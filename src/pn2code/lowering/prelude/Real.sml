@@ -12,7 +12,7 @@ fun prim_real_to_large (x : real) : IntInf.int = IntInf.fromInt 0
 val Real_radix = 2
 val Real_precision = 53
 val Real_maxFinite = 1.7976931348623157E308
-val Real_minPos = 4.9406564584124654E~324
+val Real_minPos = 2.2250738585072014E~308 / 4503599627370496.0
 val Real_minNormalPos = 2.2250738585072014E~308
 
 fun Real_times_plus (a, b, c) = prim_real_fused (a, b, c)

@@ -7,6 +7,7 @@ the grammar proper is in `grammar.lark`.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -183,6 +184,8 @@ class _Lexer:
             value = float(digits)
             if value in (float("inf"), float("-inf")):
                 return self._error(self._at, end, f"real number `{word}` is too large")
+            if abs(value) < sys.float_info.min and re.match(r"[-.0]*[1-9]", digits):
+                return self._error(self._at, end, f"real number `{word}` is too small")
             return self._add("REAL", end, value)
         if len(digits) > 4000:
             return self._error(self._at, end, "integer has more than 4000 digits")

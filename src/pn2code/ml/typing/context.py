@@ -257,17 +257,29 @@ class Context:
                 except UnifyError:
                     self.equality[declaration.name] = False
 
+    def refuse_unknown_rows(self) -> None:
+        """After `generalise`: as in SML, no later use tells which record a function takes."""
+        for row, span in self.open_records:
+            if any(prune(row) is unknown for unknown in self.unifier.unknown_rows) and not (
+                self.tainted or self.errors
+            ):
+                self._row_not_known(span)
+        self.unifier.unknown_rows.clear()
+
+    def _row_not_known(self, span: Span) -> None:
+        self.error(
+            codes.UNRESOLVED_RECORD,
+            f"the record type of `{span.text}` is not known here",
+            span,
+            hint="give the argument a type: `fun f (r : PART) = ..`",
+        )
+
     def resolve_pending(self) -> None:
         """At the end of a declaration or inscription: overloaded types take the default, records must be known."""
         before = self.errors
         for row, span in self.open_records:
             if isinstance(prune(row), Meta) and not before:
-                self.error(
-                    codes.UNRESOLVED_RECORD,
-                    f"the record type of `{span.text}` is not known here",
-                    span,
-                    hint="give the argument a type: `fun f (r : PART) = ..`",
-                )
+                self._row_not_known(span)
         self.open_records.clear()
         for meta in self.unifier.pending:
             if meta.ref is None and meta.among:

@@ -260,6 +260,7 @@ class Declarations:
         """Quantifies the unknowns of a group; all its members share the variables."""
         if is_value:
             quants = self._ctx.unifier.generalise(b.type for b in bindings.values())
+            self._ctx.refuse_unknown_rows()
             for binding in bindings.values():
                 binding.quants, binding.generalised = quants, True
         else:

@@ -163,6 +163,7 @@ class Unifier:
         self._trail: list[tuple[Meta, int, bool, tuple[str, ...], dict[str, Ty] | None, Ty | None]]
         self._trail = []
         self.level = 0
+        self.unknown_rows: list[Meta] = []
         self.pending: list[Meta] = []
         """metas with `among` or `fields`, to be looked at when the declaration ends"""
         self.see_through = False
@@ -322,6 +323,8 @@ class Unifier:
                 for name in mine.keys() & theirs.keys():
                     self._unify(mine[name], theirs[name])
         a.ref = b
+        for field in (b.fields or {}).values():
+            self._occurs(b, field)  # fields are generalised where their record is
 
     def _occurs(self, meta: Meta, t: Ty) -> None:
         """Refuses a type that contains the meta; lowers the levels of the metas inside."""
@@ -379,8 +382,12 @@ class Unifier:
     # --- schemes
 
     def generalise(self, types: Iterable[Ty]) -> list[Quant]:
-        """Quantifies the unknowns that belong to levels deeper than the present one."""
+        """Quantifies the unknowns that belong to levels deeper than the present one.
+
+        Open records among them are in `unknown_rows` afterwards: nothing outside may decide them.
+        """
         roots = list(types)
+        self.unknown_rows.clear()
         self._begin()
         for t in roots:
             self._pin(t)
@@ -395,6 +402,8 @@ class Unifier:
         t = prune(t)
         if isinstance(t, Meta):
             if t.level > self.level and (t.among or t.fields is not None):
+                if t.fields is not None:
+                    self.unknown_rows.append(t)
                 self._lower(t)
         else:
             for part in parts(t):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import accumulate
 from typing import TypeVar
 
 from pn2code.base.frozen import frozen
@@ -270,6 +271,8 @@ class Inscriptions:
             else:
                 continue
             if self._ctx.unifier.attempt(left.type, from_type(wanted, [])):
+                if name in _DELAYS.values():
+                    self._refuse_parentheses(exp)
                 full = TFun(tuple_of(wanted, delay_type), t)
 
                 def build(
@@ -289,6 +292,19 @@ class Inscriptions:
         if isinstance(element, ICon) and element.name == "list":
             return Draft(i_list(ICon("timed", element.args)), left.build)
         return Draft(ICon("timed", (left.type,)), left.build)
+
+    def _refuse_parentheses(self, exp: s.InfixExp) -> None:
+        """CPN Tools completes a token with a delay to a multi-set where the delay stands outside of parentheses."""
+        words = [t.text for t in tokenize(exp.span.source, Diagnostics()) or ()]
+        depths = list(accumulate((w == "(") - (w == ")") for w in words))
+        if words[:1] == ["("] and depths.index(0) == len(words) - 1:
+            self._ctx.error(
+                codes.TYPE_MISMATCH,
+                f"one token with a delay in parentheses: to CPN Tools `{exp.operator.name}` is there the one of "
+                "multi-sets",
+                exp.span,
+                hint="leave the parentheses out, or write 1` before the token",
+            )
 
     # --- guards
 

@@ -289,7 +289,7 @@ class Enabling:
             new = [s for s in t.variables if s.uid in choice and s.uid not in found]
             if accept is not None and not all(accept(s, choice[s.uid]) for s in new):
                 continue
-            if self._are_legal(new, choice):
+            if self._are_legal(t, new, choice):
                 yield from self._search(t, marking, position + 1, choice, free, accept, wanting)
 
     def _match_tokens(
@@ -326,7 +326,7 @@ class Enabling:
                 start = self.constants
                 for found in self._match_tokens(t, arc, step.term, marking, start, True):
                     own = {s: found[s.uid] for s in t.variables if s.uid in found}
-                    if self._are_legal(list(own), found):
+                    if self._are_legal(t, list(own), found):
                         yield own
 
     def _colours_in(self, place: int, tokens: PlaceMarking) -> list[Value]:
@@ -361,9 +361,14 @@ class Enabling:
         for value in everything:
             yield {**found, symbol.uid: value}
 
-    def _are_legal(self, new: list[Symbol], choice: Found) -> bool:
+    def _are_legal(self, t: FlatTransition, new: list[Symbol], choice: Found) -> bool:
         """A variable takes no value outside its colour set (the type of which may be larger)."""
-        return all(s.colset is None or self.colours.legal(s.colset, choice[s.uid]) for s in new)
+        for symbol in new:
+            if symbol.colset is not None:
+                with running(t.origin, f"the colour set of `{symbol.name}`"):
+                    if not self.colours.legal(symbol.colset, choice[symbol.uid]):
+                        return False
+        return True
 
     def _guards_hold(self, t: FlatTransition, position: int, found: Found) -> bool:
         """The guards that have just got their last variable: tested as early as possible."""
