@@ -587,6 +587,25 @@ def test_by_what_a_run_has_failed_can_be_read(
         assert browser.errors == []
 
 
+@pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
+def test_why_a_run_has_failed_stands_in_the_head(
+    options: dict[str, Any], tmp_path: Path, chromium: Any
+) -> None:
+    """As in the terminal, and as far as there is room; the title and the search keep theirs."""
+    shown = with_arm(described(tmp_path, PAIR))
+    why = "`robot2/link_4` and `pillar` collide (17.6 mm deep at 1958, 280, 1688 mm)"
+    shown["verdict"] = {"word": "failed", "reason": 3 * f"{why}; ", "final": []}
+    with opened(chromium, **options) as browser:
+        browser.open(written(tmp_path, shown))
+        assert browser.page.locator("#verdict .chip.bad").inner_text() == "failed"
+        assert browser.page.locator("#verdict .reason").inner_text().startswith(why)
+        assert browser.page.locator("#search").bounding_box()["width"] >= 60
+        cut = "(e) => e.scrollWidth - e.clientWidth"
+        assert options or browser.page.locator("#title").evaluate(cut) <= 0
+        assert browser.ask("() => document.documentElement.scrollWidth <= innerWidth")
+        assert complaints(browser) == []
+
+
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
     """Also where the window shows a part of the page, and of what occurs just then."""
     file = tmp_path / "replay.html"
@@ -891,7 +910,11 @@ def test_how_both_runs_have_ended_is_said(tmp_path: Path, chromium: Any) -> None
 def test_how_both_runs_have_ended_is_read_on_a_phone(tmp_path: Path, chromium: Any) -> None:
     run = described(tmp_path, steps=6)
     verdicts = (
-        {"word": "finished", "reason": "", "final": ["Top.Supervisor.All parts are at their place"]},
+        {
+            "word": "finished",
+            "reason": "",
+            "final": ["Top.Supervisor.All parts are at their place"],
+        },
         {"word": "error", "reason": "Subscript", "final": []},
     )
     first, second = ({**run, "verdict": v} for v in verdicts)
@@ -901,7 +924,9 @@ def test_how_both_runs_have_ended_is_read_on_a_phone(tmp_path: Path, chromium: A
         for text in ("nothing is enabled any more", "raised an error"):
             chip = browser.page.locator("#verdict .chip", has_text=text).bounding_box()
             assert head["x"] <= chip["x"] and chip["x"] + chip["width"] <= head["x"] + head["width"]
-            assert head["y"] <= chip["y"] and chip["y"] + chip["height"] <= head["y"] + head["height"]
+            assert (
+                head["y"] <= chip["y"] and chip["y"] + chip["height"] <= head["y"] + head["height"]
+            )
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
         assert complaints(browser) == []
 
@@ -933,9 +958,7 @@ def test_curves_are_seen_below_the_lanes_or_named_where_they_are_not(
         browser.settled()
         room, below = browser.ask(seen)
         assert room >= 0 and not below
-        happenings["parties"] += [
-            {"name": f"robot {k}", "kind": "robot"} for k in range(3, 12)
-        ]
+        happenings["parties"] += [{"name": f"robot {k}", "kind": "robot"} for k in range(3, 12)]
         browser.open(written(tmp_path, run))
         browser.settled()
         room, below = browser.ask(seen)

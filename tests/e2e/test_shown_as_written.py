@@ -144,7 +144,7 @@ def test_the_end_of_a_trace_is_neither_good_nor_bad_and_a_lasso_goes_on(
 
 
 def test_curves_are_told_apart_whatever_colours_are_seen(tmp_path: Path, chromium: Any) -> None:
-    """An arm has one colour in both charts; what it keeps from itself is dashed, and from a fourth arm on all lines are."""
+    """An arm has one colour in both charts; what it keeps from itself is dashed, as are all lines of a fourth."""
     shown = with_arm(described(tmp_path))
     arms = [f"robot{i}" for i in range(1, 5)]
     kinds = {
