@@ -127,9 +127,9 @@ export function drawChart(c, axis, chart, w) {
   c.beginPath();
   c.rect(axis.left, y - 1, w - axis.left, CURVE + 2);
   c.clip();
-  c.strokeStyle = "#D55E00";
+  c.strokeStyle = axis.ink?.faint ?? ""; // in no colour of an arm
   c.lineWidth = 1;
-  c.setLineDash([3, 3]);
+  c.setLineDash([2, 4]);
   c.beginPath();
   c.moveTo(axis.left, at(chart.limit));
   c.lineTo(w, at(chart.limit));

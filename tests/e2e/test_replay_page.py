@@ -1047,6 +1047,30 @@ def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: A
         assert browser.errors == []
 
 
+def test_the_page_of_the_last_step_is_turned_to_though_no_step_follows(
+    tmp_path: Path, chromium: Any
+) -> None:
+    """A page stays for a while, so that all can be read where much happens; then that of the last step is shown."""
+    with opened(chromium) as browser:
+        browser.open(written(tmp_path, described(tmp_path)))
+        before, soon, later, wanted = browser.ask("""() => {
+          const { net, course } = replay.page;
+          const at = (k) => course.occurred(k).instance;
+          const k = [...Array(29).keys()].find((i) => i > 0 && at(i) !== at(i + 1));
+          const how = { isPlaying: true, speed: 1 };
+          const seen = [];
+          net.update(k, k, { ...how, isPlaying: false });
+          net.shownAt = performance.now();
+          seen.push(net.current === at(k));
+          net.update(k + 1, k + 1, how);
+          seen.push(net.current);
+          net.shownAt = -1e6;
+          net.update(k + 1, k + 1.5, how);
+          return [...seen, net.current, at(k + 1)];
+        }""")
+        assert before and soon != wanted and later == wanted
+
+
 def test_a_moment_of_a_very_long_run_is_near_a_key(tmp_path: Path, chromium: Any) -> None:
     """Many steps: seeking to and fro gives the same markings as going there step by step."""
     text = PAIR.replace("[n < 40]", "[n < 4000]")
