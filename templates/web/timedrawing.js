@@ -150,7 +150,15 @@ function drawLane(view, c, lane, y, w) {
     const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
     if (fits > 2) {
       c.fillStyle = bar.kind === "activity" || bar.kind === "wait" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
-      c.fillText(shorten(bar.label, fits), Math.max(x, view.left) + 4, y + LANE / 2);
+      const label = shorten(bar.label, fits);
+      const at = Math.max(x, view.left) + 4;
+      if (over) {
+        c.strokeStyle = KINDS[bar.kind]; // no line goes through a letter
+        c.lineWidth = 4;
+        c.lineJoin = "round";
+        c.strokeText(label, at, y + LANE / 2);
+      }
+      c.fillText(label, at, y + LANE / 2);
     }
   }
   ticks(view, c, lane, y);
