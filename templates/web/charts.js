@@ -6,28 +6,68 @@ import { fitting } from "./dom.js";
 
 /** How high a line of a legend is, and how wide what shows the colour. */
 export const LABEL = 11;
-const SWATCH = 13;
+const SWATCH = 20;
 /** An axis ends at so many times the limit: a singularity must not make all else a line. */
 const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 /** Below the title of a chart its legend begins. */
 const LEGEND = 21;
+/** Between charts, and above them (CSS pixels). */
+const GAP = 8;
+
+/** No curve is flatter. */
+const LOWEST_CURVE = 56;
+const HIGHEST_CURVE = 150;
 
 /**
  * How high a chart must be so that its legend names all of its curves.
- * @param {any[]} drawn
+ * @param {any} chart
  */
-export function legendHeight(drawn) {
-  return LEGEND + LABEL * Math.max(...drawn.map((chart) => chart.curves.length), 0);
+function lowest(chart) {
+  return Math.max(LOWEST_CURVE, LEGEND + LABEL * chart.curves.length);
 }
 
 /**
- * Colour of a curve, and whether it is dashed since another one has this colour already.
- * @param {number} i
+ * How high charts are at least, one below the other.
+ * @param {any[]} drawn
  */
-function look(i) {
-  return { colour: CURVES[i % CURVES.length], isDashed: Math.floor(i / CURVES.length) % 2 === 1 };
+export function lowestHeight(drawn) {
+  return drawn.reduce((sum, chart) => sum + lowest(chart) + GAP, 0);
 }
+
+/**
+ * Charts share a height: where each of them begins, and how high it is.
+ * @param {any[]} drawn
+ * @param {number} y
+ * @param {number} height
+ */
+export function divideHeight(drawn, y, height) {
+  const more = (height - lowestHeight(drawn)) / drawn.length;
+  for (const chart of drawn) {
+    chart.y = y + GAP;
+    chart.height = Math.min(lowest(chart) + more, Math.max(HIGHEST_CURVE, lowest(chart)));
+    y = chart.y + chart.height;
+  }
+}
+
+/** What an arm keeps from others, and from itself: who cannot tell the colours of two arms can tell their lines. */
+const DASHES = { outside: [[], [1.5, 2.5], [10, 3]], itself: [[5, 3], [6, 2, 1.5, 2], [10, 2, 3, 2]] };
+
+/**
+ * The colour of a curve is that of its arm (that of texts: of all together), its line is that of what is measured.
+ * @param {string} of
+ * @param {string[]} arms
+ * @returns {{colour: string | null, dash: number[]}}
+ */
+function look(of, arms) {
+  const i = arms.indexOf(armOf(of));
+  if (i < 0) return { colour: null, dash: [] };
+  const dashes = of.startsWith("self.") ? DASHES.itself : DASHES.outside;
+  return { colour: CURVES[i % CURVES.length], dash: dashes[Math.floor(i / dashes.length) % dashes.length] };
+}
+
+/** @param {string} of */
+const armOf = (of) => of.replace(/^(scene|self)\./, "");
 
 /** @param {any} curve */
 function named(curve) {
@@ -51,6 +91,7 @@ export function legendWidth(c, drawn) {
 export function charts(run) {
   const curves = run.happenings?.curves ?? [];
   const charts = [];
+  const arms = [...new Set(curves.map((/** @type {any} */ c) => armOf(c.of)))].filter((of) => of !== "robots");
   for (const [kind, title] of [["clearance", "clearance [mm]"], ["condition", "conditioning"]]) {
     const own = curves.filter((/** @type {any} */ c) => c.kind === kind);
     if (!own.length) continue;
@@ -65,20 +106,19 @@ export function charts(run) {
         high = Math.max(high, v * scale);
       }
     }
-    charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.min(Math.max(high * 1.15, 2), MOST * limit) });
+    charts.push({ title, kind, curves: own, looks: own.map((/** @type {any} */ c) => look(c.of, arms)), scale, limit, low: Math.max(low * 0.85, 1), high: Math.min(Math.max(high * 1.15, 2), MOST * limit), y: 0, height: LOWEST_CURVE });
   }
   return charts;
 }
 
 /**
  * @param {CanvasRenderingContext2D} c
- * @param {any} axis the time: `x` of a moment, window, height of a chart, colours
+ * @param {any} axis the time: `x` of a moment, window, colours
  * @param {any} chart
- * @param {number} y
  * @param {number} w
  */
-export function drawChart(c, axis, chart, y, w) {
-  const CURVE = axis.curve;
+export function drawChart(c, axis, chart, w) {
+  const { y, height: CURVE } = chart;
   const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
   const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
   c.fillStyle = axis.ink?.text ?? "";
@@ -87,18 +127,18 @@ export function drawChart(c, axis, chart, y, w) {
   c.beginPath();
   c.rect(axis.left, y - 1, w - axis.left, CURVE + 2);
   c.clip();
-  c.strokeStyle = "#D55E00";
+  c.strokeStyle = axis.ink?.faint ?? ""; // in no colour of an arm
   c.lineWidth = 1;
-  c.setLineDash([3, 3]);
+  c.setLineDash([2, 4]);
   c.beginPath();
   c.moveTo(axis.left, at(chart.limit));
   c.lineTo(w, at(chart.limit));
   c.stroke();
   c.setLineDash([]);
   chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
-    const { colour, isDashed } = look(i);
-    c.strokeStyle = colour;
-    c.setLineDash(isDashed ? [6, 4] : []);
+    const { colour, dash } = chart.looks[i];
+    c.strokeStyle = colour ?? axis.ink?.text ?? "";
+    c.setLineDash(dash);
     c.lineWidth = 1.5;
     c.beginPath();
     let isOpen = false;
@@ -117,7 +157,7 @@ export function drawChart(c, axis, chart, y, w) {
     c.stroke();
   });
   c.restore();
-  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => drawLegend(c, axis, curve, i, y + LEGEND + i * LABEL));
+  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => drawLegend(c, axis, curve, chart.looks[i], y + LEGEND + i * LABEL));
 }
 
 /**
@@ -125,14 +165,13 @@ export function drawChart(c, axis, chart, y, w) {
  * @param {CanvasRenderingContext2D} c
  * @param {any} axis as above
  * @param {any} curve
- * @param {number} i which one of its chart
+ * @param {{colour: string | null, dash: number[]}} look
  * @param {number} y
  */
-function drawLegend(c, axis, curve, i, y) {
-  const { colour, isDashed } = look(i);
-  c.strokeStyle = colour;
+function drawLegend(c, axis, curve, { colour, dash }, y) {
+  c.strokeStyle = colour ?? axis.ink?.text ?? "";
   c.lineWidth = 3;
-  c.setLineDash(isDashed ? [5, 3] : []);
+  c.setLineDash(dash);
   c.beginPath();
   c.moveTo(8, y);
   c.lineTo(8 + SWATCH, y);

@@ -37,7 +37,7 @@ export class Code {
       onclick: () => this.setFollowing(!this.isFollowing),
     });
     this.numbers = el("pre", { class: "numbers", "aria-hidden": "true" });
-    this.text = el("pre", { class: "code", tabindex: "0", "aria-label": "Program" });
+    this.text = el("pre", { class: "code", tabindex: "0", role: "group", "aria-label": "Program" });
     this.marks = el("div", { class: "marks" });
     this.view = el("div", { class: "program" }, this.marks, this.numbers, this.text);
     this.text.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.press(e));

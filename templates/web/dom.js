@@ -59,6 +59,14 @@ export function byId(id) {
 }
 
 /**
+ * What scrolls can be scrolled by keys: some browsers make it a stop of Tab by themselves, not all do.
+ * @param {HTMLElement} node it has a role and a name
+ */
+export function reachable(node) {
+  if (getComputedStyle(node).overflowY === "auto") node.tabIndex = 0;
+}
+
+/**
  * A text of at most so many characters.
  * @param {string} text
  * @param {number} most

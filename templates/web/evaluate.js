@@ -18,7 +18,7 @@ export class Evaluate {
       title: "Ctrl-Enter", work: (text) => this.work(text),
     });
     this.rows = el("ol", { class: "plain answers", "aria-live": "polite", "aria-label": "Values" });
-    this.printed = el("pre", { class: "whole", hidden: true, "aria-label": "What the net has printed" });
+    this.printed = el("pre", { class: "whole", hidden: true, tabindex: "0", role: "group", "aria-label": "What the net has printed" });
     host.append(this.field.root,
       el("p", { class: "note", text: "Mark.Page'Place 1 is what a place holds, as a list; time () and step () are those of now. Nothing of the net is changed." }),
       this.rows, this.printed);

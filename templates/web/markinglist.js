@@ -9,6 +9,12 @@ import { field, wrong } from "./parts.js";
 
 const SHOWN = 600;
 const MOST = 400;
+/** A text of more lines is scrolled, each of at least so many letters. */
+const LINES = 6;
+const LETTERS = 30;
+
+/** @param {string} text */
+const isLong = (text) => text.split("\n").reduce((n, line) => n + Math.max(Math.ceil(line.length / LETTERS), 1), 0) > LINES;
 
 export class MarkingList {
   /**
@@ -56,7 +62,10 @@ export class MarkingList {
     return el("li", {},
       el("button", { class: "link", text: place.name, title: `of colour set ${place.colset}`, onclick: () => this.choose(p) }),
       el("span", { class: "count", text: this.position.counts[p].toLocaleString("en") }),
-      el("pre", { text: text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text }));
+      el("pre", {
+        text: text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text,
+        ...(isLong(text) ? { tabindex: "0", role: "group", "aria-label": `Tokens of ${place.short}` } : {}),
+      }));
   }
 
   /**
@@ -66,7 +75,7 @@ export class MarkingList {
   choose(p) {
     this.chosen = p;
     const place = this.position.net.places[p];
-    this.whole = el("pre", { class: "whole", tabindex: "0", "aria-label": `Tokens of ${place.short}` });
+    this.whole = el("pre", { class: "whole", tabindex: "0", role: "group", "aria-label": `Tokens of ${place.short}` });
     this.change = field({
       label: `New marking of ${place.short}`, placeholder: "1`(1, \"a\") ++ 2`(3, \"b\")", button: "Change", rows: 3,
       title: "Ctrl-Enter. With it a new run begins.", work: (text) => this.set(p, text),

@@ -30,6 +30,8 @@ export class NetView {
     this.actions = actions;
     this.isFollowing = true;
     this.shownAt = 0;
+    /** Whether the page of the last step is to be turned to when this one has been seen for long enough. */
+    this.isOwed = false;
     this.current = -1;
     this.lastStep = -1;
     /** What is lit. */
@@ -172,6 +174,7 @@ export class NetView {
     if (instance < 0 || instance >= this.net.instances.length || instance === this.current) return;
     this.current = instance;
     this.shownAt = performance.now();
+    this.isOwed = false;
     this.choice.value = String(instance);
     const page = this.net.instances[instance].page;
     const made = this.draw(page);
@@ -324,10 +327,11 @@ export class NetView {
     this.lastTime = t;
     const isNew = k !== this.lastStep;
     this.lastStep = k;
-    if (isNew) this.followStep(k, !how.isPlaying);
+    const isTurning = isNew || this.isOwed;
+    if (isTurning) this.followStep(k, !how.isPlaying);
     this.tokens();
     this.light(k, t);
-    if (isNew) this.near(k);
+    if (isTurning) this.near(k);
     if (isNew && came > 0 && came < 40 && !how.isSparing && !isStill()) {
       for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) {
         const occurred = this.course.occurred(i);
@@ -342,7 +346,8 @@ export class NetView {
    */
   followStep(k, atOnce) {
     if (!this.isFollowing || k < 1) return;
-    if (atOnce || performance.now() - this.shownAt > STAY_MS) this.show(this.course.occurred(k).instance);
+    this.isOwed = !atOnce && performance.now() - this.shownAt <= STAY_MS;
+    if (!this.isOwed) this.show(this.course.occurred(k).instance);
   }
 
   /** Draws the tokens of the places whose marking has changed. */

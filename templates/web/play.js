@@ -3,7 +3,7 @@
 
 import { Declarations, GameFile, Problems } from "./about.js";
 import { Asking } from "./asking.js";
-import { byId, el } from "./dom.js";
+import { byId, el, reachable } from "./dom.js";
 import { Frame } from "./frame.js";
 import { EnabledList } from "./enabledlist.js";
 import { Evaluate } from "./evaluate.js";
@@ -104,6 +104,7 @@ class Page {
     for (const { name: own, tab, body } of this.tabs ?? []) {
       tab.setAttribute("aria-selected", String(own === name));
       body.hidden = own !== name;
+      reachable(body);
       if (own === name) tab.scrollIntoView({ block: "nearest", inline: "nearest" });
     }
     this.enabled?.update();

@@ -6,7 +6,7 @@ import { CellView } from "./cellview.js";
 import { Clock } from "./clock.js";
 import { Code } from "./code.js";
 import { Course, loopOf } from "./course.js";
-import { byId, el } from "./dom.js";
+import { byId, el, reachable } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
 import { Messages, Steps } from "./messages.js";
@@ -47,6 +47,8 @@ export class ReplayPage {
     this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
       onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k),
     });
+    // All of the time is seen where that leaves enough room to the rest.
+    document.body.style.setProperty("--wanted", `${this.timeline.wanted()}px`);
     this.panels(actions);
     this.search = new Search(byId("search"), this.clock, actions);
     this.transport = new Transport(byId("transport"), this.clock, {
@@ -68,7 +70,8 @@ export class ReplayPage {
   head() {
     byId("title").textContent = this.run.title;
     const chip = chipOf(this.run);
-    if (chip) byId("verdict").replaceChildren(chip);
+    const { reason } = this.run.verdict;
+    if (chip) byId("verdict").replaceChildren(chip, ...(reason ? [el("span", { class: "reason", text: reason, title: reason })] : []));
   }
 
   /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */
@@ -112,6 +115,7 @@ export class ReplayPage {
     for (const { name: own, tab, body } of this.tabs ?? []) {
       tab.setAttribute("aria-selected", String(own === name));
       body.hidden = own !== name;
+      reachable(body);
     }
     this.code?.update(true);
     this.watch?.update();

@@ -5,9 +5,8 @@ import { LABEL, drawChart, legendWidth } from "./charts.js";
 import { upperBound } from "./course.js";
 import { colour, fitting, shorten } from "./dom.js";
 
-/** Height of the axis, and between curves (CSS pixels). */
+/** Height of the axis (CSS pixels). */
 export const HEAD = 20;
-export const GAP = 8;
 /** Where the axis begins: right of the names, if these leave two thirds of the width to it. */
 const NAMES = { least: 108, most: 260, all: 0.33 };
 
@@ -15,6 +14,14 @@ const NAMES = { least: 108, most: 260, all: 0.33 };
 const KINDS = /** @type {Record<string, string>} */ ({
   joint: "#0072B2", home: "#56B4E9", linear: "#009E73", external: "#E69F00", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
 });
+/** Lines over a bar: of some kinds the colours are one to those who see two of three, and grey is that of others then. */
+const TEXTURES = /** @type {Record<string, (c: CanvasRenderingContext2D) => void>} */ ({
+  tool: (c) => { for (const x of [-6, 0, 6]) { c.moveTo(x, 6); c.lineTo(x + 6, 0); } },
+  measure: (c) => { c.moveTo(1, 3); c.lineTo(3, 3); c.moveTo(4, 0.5); c.lineTo(6, 0.5); },
+});
+const TEXTURE = 6;
+/** @type {Map<string, CanvasPattern | null>} */
+const textures = new Map();
 /** On these dark letters can be read. */
 const LIGHT = new Set(["home", "external"]);
 
@@ -35,7 +42,7 @@ export function drawStill(view, w, h) {
   view.divide();
   view.lanes.forEach((lane, i) => drawLane(view, c, lane, HEAD + i * view.lane, w));
   messages(view, c);
-  view.curves.forEach((/** @type {any} */ chart, /** @type {number} */ i) => drawChart(c, view, chart, HEAD + view.lanes.length * view.lane + GAP + i * (view.curve + GAP), w));
+  for (const chart of view.curves) drawChart(c, view, chart, w);
   events(view, c, h);
 }
 
@@ -129,16 +136,58 @@ function drawLane(view, c, lane, y, w) {
     const width = Math.max(view.x(bar.end) - x, 1.5);
     c.fillStyle = bar.kind === "activity" ? (view.ink?.bar ?? "") : (KINDS[bar.kind] ?? "#444");
     c.globalAlpha = bar.kind === "activity" ? 0.9 : 1;
-    c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
+    if (bar.kind === "wait" && width > 3) {
+      c.strokeStyle = c.fillStyle;
+      c.lineWidth = 1.5;
+      c.strokeRect(x + 0.75, y + 4.75, width - 2.1, LANE - 9.5);
+    } else c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
     c.globalAlpha = 1;
+    const over = texture(c, bar.kind);
+    if (over && width > 3) {
+      c.fillStyle = over;
+      c.fillRect(x, y + 4, width - 0.6, LANE - 8);
+    }
     const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
     if (fits > 2) {
-      c.fillStyle = bar.kind === "activity" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
-      c.fillText(shorten(bar.label, fits), Math.max(x, view.left) + 4, y + LANE / 2);
+      c.fillStyle = bar.kind === "activity" || bar.kind === "wait" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
+      const label = shorten(bar.label, fits);
+      const at = Math.max(x, view.left) + 4;
+      if (over) {
+        c.strokeStyle = KINDS[bar.kind]; // no line goes through a letter
+        c.lineWidth = 4;
+        c.lineJoin = "round";
+        c.strokeText(label, at, y + LANE / 2);
+      }
+      c.fillText(label, at, y + LANE / 2);
     }
   }
   ticks(view, c, lane, y);
   c.restore();
+}
+
+/**
+ * What is drawn over bars of a kind, if anything is.
+ * @param {CanvasRenderingContext2D} c
+ * @param {string} kind
+ */
+function texture(c, kind) {
+  const draw = TEXTURES[kind];
+  if (!draw) return null;
+  if (!textures.has(kind)) {
+    const tile = document.createElement("canvas");
+    tile.width = tile.height = 2 * TEXTURE;
+    const t = /** @type {CanvasRenderingContext2D} */ (tile.getContext("2d"));
+    t.scale(2, 2);
+    t.strokeStyle = "rgba(255, 255, 255, 0.55)";
+    t.lineWidth = 1.5;
+    t.beginPath();
+    draw(t);
+    t.stroke();
+    const pattern = c.createPattern(tile, "repeat");
+    pattern?.setTransform(new DOMMatrix().scale(0.5));
+    textures.set(kind, pattern);
+  }
+  return textures.get(kind) ?? null;
 }
 
 /**
@@ -201,6 +250,30 @@ function arrow(view, c, m, hasHead) {
 }
 
 /**
+ * The sign of an event: each kind has a shape of its own, that of the list of moments.
+ * @param {CanvasRenderingContext2D} c
+ * @param {string} kind
+ * @param {number} x
+ * @param {number} y
+ */
+function sign(c, kind, x, y) {
+  c.beginPath();
+  if (kind === "mark") c.arc(x, y + 1, 3, 0, 7);
+  else if (kind === "fault") {
+    c.lineWidth = 2.5;
+    for (const d of [-1, 1]) {
+      c.moveTo(x - 4, y - 4 * d);
+      c.lineTo(x + 4, y + 4 * d);
+    }
+    c.stroke();
+  } else {
+    const corners = { warning: [[0, -4], [4.5, 4], [-4.5, 4]], part: [[0, -4.5], [4.5, 0], [0, 4.5], [-4.5, 0]] }[kind] ?? [[0, 4], [4, -3], [-4, -3]];
+    for (const [dx, dy] of corners) c.lineTo(x + dx, y + dy);
+  }
+  c.fill();
+}
+
+/**
  * @param {Timeline} view
  * @param {CanvasRenderingContext2D} c
  * @param {number} h
@@ -215,15 +288,7 @@ function events(view, c, h) {
     if (!ink || event.t < view.from || event.t > view.to) continue;
     const x = view.x(event.t);
     c.fillStyle = c.strokeStyle = ink;
-    c.beginPath();
-    if (event.kind === "mark") {
-      c.arc(x, HEAD - 4, 3, 0, 7);
-    } else {
-      c.moveTo(x, HEAD - 1);
-      c.lineTo(x - 4, HEAD - 8);
-      c.lineTo(x + 4, HEAD - 8);
-    }
-    c.fill();
+    sign(c, event.kind, x, HEAD - 5);
     if (event.kind === "fault") c.fillRect(x - 0.75, HEAD, 1.5, h);
   }
   view.marks.forEach(({ t, text }, i) => {

@@ -1,15 +1,16 @@
 // @ts-check
 /** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
 
-import { charts, growCharts, legendHeight } from "./charts.js";
+import { charts, divideHeight, growCharts, lowestHeight } from "./charts.js";
 import { upperBound } from "./course.js";
+import { el } from "./dom.js";
 import { growLanes, lanesOf } from "./lanes.js";
-import { GAP, HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
+import { HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
 
 const LOWEST_LANE = 20;
 const HIGHEST_LANE = 32;
-const LOWEST_CURVE = 66;
-const HIGHEST_CURVE = 150;
+/** Of the wanted height, what is left above the drawing and below it. */
+const FRAME = 4;
 
 /** @typedef {import("./clock.js").Clock} Clock */
 /** @typedef {import("./lanes.js").Lane} Lane */
@@ -36,7 +37,10 @@ export class Timeline {
     this.above = document.createElement("canvas");
     this.above.className = "above";
     this.above.setAttribute("aria-hidden", "true");
-    host.append(this.canvas, this.above);
+    /** What is below the fold is named there, and shown by a click. */
+    this.below = el("button", { class: "below", hidden: true, onclick: () => this.host.scrollTo({ top: this.host.scrollHeight }) });
+    host.append(this.canvas, this.above, this.below);
+    host.addEventListener("scroll", () => this.tellBelow());
     this.drawn = "";
     /** Where buttons and fingers are that are down. @type {Map<number, number>} */
     this.fingers = new Map();
@@ -45,7 +49,6 @@ export class Timeline {
     this.from = 0;
     this.to = clock.end;
     this.lane = LOWEST_LANE;
-    this.curve = LOWEST_CURVE;
     /** Where the axis begins. */
     this.left = 0;
     /** @type {{x: number, y: number} | null} where the mouse is */
@@ -55,8 +58,6 @@ export class Timeline {
     /** @type {Lane[]} */
     this.lanes = lanesOf(run, clock.course);
     this.curves = charts(run);
-    /** No chart is lower than its legend. */
-    this.lowestCurve = Math.max(LOWEST_CURVE, legendHeight(this.curves));
     new ResizeObserver(() => this.paint()).observe(host);
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
     this.canvas.addEventListener("pointermove", (e) => this.point(e));
@@ -64,23 +65,39 @@ export class Timeline {
     this.canvas.addEventListener("pointerleave", () => this.leave());
     this.canvas.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
     this.canvas.addEventListener("dblclick", () => this.whole());
-    host.style.setProperty("--wanted", `${this.height()}px`);
   }
 
   height() {
-    return HEAD + this.lanes.length * LOWEST_LANE + this.curves.length * (this.lowestCurve + GAP) + 6;
+    return HEAD + this.lanes.length * LOWEST_LANE + lowestHeight(this.curves) + 6;
+  }
+
+  /** The height of a pane in which all is seen. */
+  wanted() {
+    return this.height() + FRAME + 2;
   }
 
   /** Lanes and curves share the height that there is. */
   divide() {
-    const free = Math.max(this.host.clientHeight - 4, this.height()) - HEAD - 6;
+    const free = Math.max(this.host.clientHeight - FRAME, this.height()) - HEAD - 6;
     const lanes = Math.max(this.lanes.length, 1);
     // What curves need at least is theirs: higher lanes would push the last chart out of the picture.
-    const most = free - this.curves.length * (this.lowestCurve + GAP);
+    const most = free - lowestHeight(this.curves);
     const wanted = (this.curves.length ? Math.min(0.5 * free, most) : free) / lanes;
     this.lane = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
-    const rest = free - this.lanes.length * this.lane;
-    this.curve = Math.min(Math.max(rest / Math.max(this.curves.length, 1) - GAP, this.lowestCurve), Math.max(HIGHEST_CURVE, this.lowestCurve));
+    const all = this.lanes.length * this.lane;
+    divideHeight(this.curves, HEAD + all, free - all);
+  }
+
+  /** Names what is below the fold. */
+  tellBelow() {
+    const { scrollTop, clientHeight, scrollHeight } = this.host;
+    const fold = scrollTop + clientHeight;
+    const lanes = this.lanes.filter((_, i) => HEAD + (i + 0.5) * this.lane > fold).length;
+    const names = [lanes ? `${lanes} more lane${lanes === 1 ? "" : "s"}` : "", ...this.curves.filter((c) => c.y + c.height > fold + 4).map((c) => c.title)];
+    const said = scrollHeight > clientHeight + 2 ? names.filter((x) => x).join(", ") : "";
+    this.below.hidden = !said;
+    const text = `▾ ${said}`;
+    if (this.below.textContent !== text) this.below.textContent = text;
   }
 
   /**
@@ -284,5 +301,6 @@ export class Timeline {
       drawStill(this, w, h);
     }
     drawMoment(this, cleared(this.above, w, h), h);
+    this.tellBelow();
   }
 }

@@ -4,14 +4,15 @@
 import { loopOf } from "./course.js";
 import { el } from "./dom.js";
 
-/** How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
+/** The words are those of the terminal. How a run of a simulator or a counterexample ended is neither good nor bad; that of a cell is. */
 const GOOD = new Set(["finished", "steps", "cut"]);
 /** @type {Record<string, Record<string, string>>} */
 const WORDS = {
-  seconds: { steps: "more would be possible", cut: "shown in part" },
+  seconds: { steps: "the number of steps was reached", cut: "shown in part" },
   steps: {
-    finished: "nothing more is possible", steps: "more would be possible", cut: "shown in part", until: "more would be possible later",
-    breakpoint: "ended at a breakpoint", evidence: "ends with what it shows", replay: "ended by its trace",
+    finished: "nothing is enabled any more", steps: "the number of steps was reached", cut: "shown in part",
+    until: "the next step would be after the given time", breakpoint: "a breakpoint was reached", evidence: "ends with what it shows",
+    error: "an inscription of the net raised an error", replay: "the trace cannot be repeated",
   },
 };
 
@@ -41,7 +42,7 @@ export function chipOf({ verdict, course, clock }) {
   const kind = isBad ? "bad" : clock === "seconds" ? "good" : "plain";
   // A run that has finished may have done so in a place that means failure: cell.toml says which ones do.
   const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
-  const ended = places ? `${word} in ${places}` : word;
+  const ended = places ? `${word}, ended in ${places}` : word;
   const why = conditionsOf(verdict);
   const text = !hasFailed(verdict) ? ended : why.length ? `failure: ${why.join("; ")}` : `failure: ${places || word}`;
   return el("span", { class: `chip ${kind}`, text, title: [text, why.length ? ended : "", verdict.reason].filter(Boolean).join("; ") });

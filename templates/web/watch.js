@@ -38,8 +38,8 @@ export class Watch {
     const { course } = this.clock;
     if (this.places.has(place) || !course.net.places[place]) return;
     const canvas = el("canvas", { "aria-hidden": "true" });
-    const text = el("pre", {});
     const name = course.net.places[place].name;
+    const text = el("pre", { tabindex: "0", role: "group", "aria-label": `Tokens of ${name}` });
     const root = el(
       "section", { class: "strip" },
       el("header", {},

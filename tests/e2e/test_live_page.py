@@ -82,7 +82,7 @@ def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) ->
             page.get_by_text(said).wait_for()
             browser.ask("() => (document.documentElement.dataset.theme = 'dark')")
             assert [c for c in complaints(browser) if "said" in c] == []
-        page.locator("#verdict").get_by_text("stopped").wait_for()
+        page.locator("#verdict .chip", has_text="stopped").wait_for()
         assert (
             page.get_by_role("list", name="Alarms").get_by_text("stopped by the live page").count()
             == 1

@@ -258,6 +258,16 @@ class TestPlaying:
         assert last[2] - first[2] == 2, "there is a picture without them before"
         assert set(seen["delays"]) == {0} and len(set(seen["lasts"])) == 1
 
+    def test_keys_come_to_what_scrolls(self, browser: Page) -> None:
+        """Not all browsers make what scrolls a stop of Tab: declarations are one, after what finds in them."""
+        browser.page.get_by_role("tab", name="Net", exact=True).click()
+        panel = browser.page.get_by_role("tabpanel", name="Net")
+        browser.page.get_by_role("tab", name="Game", exact=True).focus()
+        browser.page.keyboard.press("Tab")
+        assert panel.evaluate("(e) => e === document.activeElement && e.tabIndex === 0")
+        browser.page.get_by_role("tab", name="Steps", exact=True).click()
+        assert browser.page.get_by_role("tabpanel").evaluate("(e) => e.tabIndex") == -1
+
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:
         browser.page.keyboard.press("Space")
         at(browser, 1)

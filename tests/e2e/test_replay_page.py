@@ -577,7 +577,7 @@ def test_by_what_a_run_has_failed_can_be_read(
         chip = browser.page.locator("#verdict .chip.bad")
         condition = failed[0][2:-2]
         assert chip.inner_text() == f"failure: {condition}"
-        assert chip.get_attribute("title") == f"failure: {condition}; finished in Finished"
+        assert chip.get_attribute("title") == f"failure: {condition}; finished, ended in Finished"
         assert browser.ask("() => document.documentElement.scrollWidth <= innerWidth")
         if options:
             browser.page.get_by_role("button", name="More", exact=True).click()
@@ -585,6 +585,25 @@ def test_by_what_a_run_has_failed_can_be_read(
         row = browser.page.locator("#panel-run dt", has_text="failure").locator("+ dd")
         assert row.inner_text() == condition
         assert browser.errors == []
+
+
+@pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
+def test_why_a_run_has_failed_stands_in_the_head(
+    options: dict[str, Any], tmp_path: Path, chromium: Any
+) -> None:
+    """As in the terminal, and as far as there is room; the title and the search keep theirs."""
+    shown = with_arm(described(tmp_path, PAIR))
+    why = "`robot2/link_4` and `pillar` collide (17.6 mm deep at 1958, 280, 1688 mm)"
+    shown["verdict"] = {"word": "failed", "reason": 3 * f"{why}; ", "final": []}
+    with opened(chromium, **options) as browser:
+        browser.open(written(tmp_path, shown))
+        assert browser.page.locator("#verdict .chip.bad").inner_text() == "failed"
+        assert browser.page.locator("#verdict .reason").inner_text().startswith(why)
+        assert browser.page.locator("#search").bounding_box()["width"] >= 60
+        cut = "(e) => e.scrollWidth - e.clientWidth"
+        assert options or browser.page.locator("#title").evaluate(cut) <= 0
+        assert browser.ask("() => document.documentElement.scrollWidth <= innerWidth")
+        assert complaints(browser) == []
 
 
 def test_what_a_key_goes_to_is_seen_and_stands_out(tmp_path: Path, chromium: Any) -> None:
@@ -878,12 +897,76 @@ def test_how_both_runs_have_ended_is_said(tmp_path: Path, chromium: Any) -> None
     with opened(chromium, viewport={"width": 1400, "height": 950}) as browser:
         browser.open(written(tmp_path, first, second))
         said = browser.page.locator("#verdict")
-        assert said.inner_text().split() == ["A", "nothing", "more", "is", "possible", "B", "error"]
+        words = "A nothing is enabled any more B an inscription of the net raised an error"
+        assert " ".join(said.inner_text().split()) == words
         kinds = "() => [...document.querySelectorAll('#verdict .chip')].map((c) => c.className)"
         assert browser.ask(kinds) == ["chip plain", "chip bad"]
         assert complaints(browser) == []
         browser.open(written(tmp_path, first))
-        assert said.inner_text() == "nothing more is possible"
+        assert said.inner_text() == "nothing is enabled any more"
+        assert browser.errors == []
+
+
+def test_how_both_runs_have_ended_is_read_on_a_phone(tmp_path: Path, chromium: Any) -> None:
+    run = described(tmp_path, steps=6)
+    verdicts = (
+        {
+            "word": "finished",
+            "reason": "",
+            "final": ["Top.Supervisor.All parts are at their place"],
+        },
+        {"word": "error", "reason": "Subscript", "final": []},
+    )
+    first, second = ({**run, "verdict": v} for v in verdicts)
+    with opened(chromium, **PHONE) as browser:
+        browser.open(written(tmp_path, first, second))
+        head = browser.page.locator("#verdict").bounding_box()
+        for text in ("nothing is enabled any more", "raised an error"):
+            chip = browser.page.locator("#verdict .chip", has_text=text).bounding_box()
+            assert head["x"] <= chip["x"] and chip["x"] + chip["width"] <= head["x"] + head["width"]
+            assert (
+                head["y"] <= chip["y"] and chip["y"] + chip["height"] <= head["y"] + head["height"]
+            )
+        assert browser.ask("() => document.documentElement.scrollWidth") <= 390
+        assert complaints(browser) == []
+
+
+def test_curves_are_seen_below_the_lanes_or_named_where_they_are_not(
+    tmp_path: Path, chromium: Any
+) -> None:
+    """At 1280 x 720: of two arms all is seen; of many, what is below the fold is named, and a click shows it."""
+    run = with_arm(described(tmp_path, PAIR))
+    happenings = run["happenings"]
+    happenings["parties"] += [{"name": "robot2", "kind": "robot"}]
+    of = {
+        "clearance": ["robots", "scene.robot1", "scene.robot2", "self.robot1", "self.robot2"],
+        "condition": ["robot1", "robot2"],
+    }
+    happenings["curves"] = [
+        {"kind": kind, "of": name, "limit": 0.02 if kind == "clearance" else 50.0}
+        | {"t": packed_reals([0.0, 9.0], double=True), "v": packed_reals([1.0, 2.0])}
+        for kind, names in of.items()
+        for name in names
+    ]
+    seen = """() => {
+      const { host, curves, below } = replay.page.timeline;
+      const { y, height } = curves[curves.length - 1];
+      return [host.scrollTop + host.clientHeight - y - height, below.hidden ? "" : below.textContent];
+    }"""
+    with opened(chromium) as browser:
+        browser.open(written(tmp_path, run))
+        browser.settled()
+        room, below = browser.ask(seen)
+        assert room >= 0 and not below
+        happenings["parties"] += [{"name": f"robot {k}", "kind": "robot"} for k in range(3, 12)]
+        browser.open(written(tmp_path, run))
+        browser.settled()
+        room, below = browser.ask(seen)
+        assert room < 0 and below == "▾ clearance [mm], conditioning"
+        assert complaints(browser) == []
+        browser.page.get_by_role("button", name="conditioning").click()
+        browser.wait("replay.page.timeline.below.hidden")
+        assert browser.ask(seen)[0] >= 0
         assert browser.errors == []
 
 
@@ -946,6 +1029,8 @@ def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: A
         banner.get_by_role("button", name="Pose: arm").click()
         assert browser.ask(at) == [8.0, 8, 16.0, 8]
         assert "mm from A" in browser.page.locator("#cell-2 .apart").inner_text()
+        margin = "(e) => getComputedStyle(e).marginLeft"
+        assert browser.page.locator("#cell-2 .apart").evaluate(margin) == "8px"
         banner.get_by_role("button", name="Message: done").click()
         assert browser.ask(at)[0] == 9.0
         banner.get_by_role("button", name="Same time").click()
@@ -960,6 +1045,30 @@ def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: A
         browser.wait(f"{size}.width > 200 && {size}.height > 60")
         assert complaints(browser) == []
         assert browser.errors == []
+
+
+def test_the_page_of_the_last_step_is_turned_to_though_no_step_follows(
+    tmp_path: Path, chromium: Any
+) -> None:
+    """A page stays for a while, so that all can be read where much happens; then that of the last step is shown."""
+    with opened(chromium) as browser:
+        browser.open(written(tmp_path, described(tmp_path)))
+        before, soon, later, wanted = browser.ask("""() => {
+          const { net, course } = replay.page;
+          const at = (k) => course.occurred(k).instance;
+          const k = [...Array(29).keys()].find((i) => i > 0 && at(i) !== at(i + 1));
+          const how = { isPlaying: true, speed: 1 };
+          const seen = [];
+          net.update(k, k, { ...how, isPlaying: false });
+          net.shownAt = performance.now();
+          seen.push(net.current === at(k));
+          net.update(k + 1, k + 1, how);
+          seen.push(net.current);
+          net.shownAt = -1e6;
+          net.update(k + 1, k + 1.5, how);
+          return [...seen, net.current, at(k + 1)];
+        }""")
+        assert before and soon != wanted and later == wanted
 
 
 def test_a_moment_of_a_very_long_run_is_near_a_key(tmp_path: Path, chromium: Any) -> None:

@@ -136,11 +136,38 @@ def test_the_end_of_a_trace_is_neither_good_nor_bad_and_a_lasso_goes_on(
     assert found["at"] == [[29, True], [29, True], [12, True], [13, True]]
     assert found["ended"] == [30, False]
     assert found["words"] == [
-        "chip plain: nothing more is possible",
-        "chip plain: more would be possible",
-        "chip plain: more would be possible later",
-        "chip bad: error",
+        "chip plain: nothing is enabled any more",
+        "chip plain: the number of steps was reached",
+        "chip plain: the next step would be after the given time",
+        "chip bad: an inscription of the net raised an error",
     ]
+
+
+def test_curves_are_told_apart_whatever_colours_are_seen(tmp_path: Path, chromium: Any) -> None:
+    """An arm has one colour in both charts; what it keeps from itself is dashed, as are all lines of a fourth."""
+    shown = with_arm(described(tmp_path))
+    arms = [f"robot{i}" for i in range(1, 5)]
+    kinds = {
+        "clearance": ["robots", *(f"{of}.{arm}" for of in ("scene", "self") for arm in arms)],
+        "condition": arms,
+    }
+    shown["happenings"]["curves"] = [
+        {"kind": kind, "of": name, "limit": 0.02, "t": [0.0, 30.0], "v": [0.1, 0.2]}
+        for kind, names in kinds.items()
+        for name in names
+    ]
+    file = tmp_path / "replay.html"
+    file.write_text(page(shown), encoding="utf-8")
+    with opened(chromium) as browser:
+        browser.open(file)
+        looks = browser.ask("() => replay.page.timeline.curves.map((chart) => chart.looks)")
+        assert browser.errors == []
+    (robots, *clearance), condition = ([(x["colour"], tuple(x["dash"])) for x in c] for c in looks)
+    scene, own = clearance[:4], clearance[4:]
+    assert robots == (None, ()) and scene == condition
+    assert [colour for colour, _ in scene] == [colour for colour, _ in own]
+    assert len({dash for _, dash in (scene[0], own[0], scene[3], own[3])}) == 4
+    assert len(set(clearance)) == 8
 
 
 @pytest.mark.parametrize("count", [4, 5, 11])
@@ -158,15 +185,21 @@ def test_every_curve_is_named_within_its_chart(count: int, tmp_path: Path, chrom
         browser.open(file)
         written = browser.ask(
             """() => {
-              const [own, told] = [CanvasRenderingContext2D.prototype.fillText, []];
-              CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
-                told.push([text, y, this.fillStyle]);
+              const kind = CanvasRenderingContext2D.prototype;
+              const [own, stroke, told] = [kind.fillText, kind.stroke, []];
+              let line = "";
+              kind.stroke = function () {
+                line = [this.strokeStyle, ...this.getLineDash()].join(" ");
+                stroke.call(this);
+              };
+              kind.fillText = function (text, x, y) {
+                told.push([text, y, line]);
                 own.call(this, text, x, y);
               };
               const { timeline } = replay.page;
               timeline.drawn = "";
               timeline.draw();
-              CanvasRenderingContext2D.prototype.fillText = own;
+              Object.assign(kind, { fillText: own, stroke });
               return told;
             }"""
         )
@@ -175,10 +208,8 @@ def test_every_curve_is_named_within_its_chart(count: int, tmp_path: Path, chrom
     lines = [row for row in written if "scene arm" in row[0]]
     assert len(lines) == 2 * count
     for chart in (lines[:count], lines[count:]):
-        assert [text.removeprefix("- ") for text, _, _ in chart] == [
-            f"scene arm{i}" for i in range(count)
-        ]
-        assert len({(text.startswith("- "), colour) for text, _, colour in chart}) == count
+        assert [text for text, _, _ in chart] == [f"scene arm{i}" for i in range(count)]
+        assert len({line for _, _, line in chart}) == count
     title = next(y for text, y, _ in written if text == "conditioning")
     assert lines[count - 1][1] < title < lines[count][1]
     assert max(y for _, y, _ in lines) < high

@@ -1,4 +1,5 @@
-"""What a page must be for those who see badly or not at all: names for what can be operated, texts that stand out."""
+"""What a page must be for those who see badly or not at all: names for what can be operated, texts that stand out, and
+keys that come to all that can be scrolled."""
 
 from __future__ import annotations
 
@@ -34,6 +35,22 @@ _ASK = """least => {
   for (const node of document.querySelectorAll("[role=img], [aria-hidden=true], button, a, summary")) {
     const hidden = node.querySelector(inside);
     if (hidden) found.push(`not told of, since it is within another one: ${hidden.outerHTML.slice(0, 100)}`);
+  }
+  for (const node of document.querySelectorAll("[tabindex='0']:not(button, select, input, textarea, a)")) {
+    if (!isSeen(node)) continue;
+    const isNamed = node.getAttribute("aria-label") || node.textContent.trim();
+    if (!node.getAttribute("role")) found.push(`no role: ${node.outerHTML.slice(0, 100)}`);
+    if (!isNamed) found.push(`no name: ${node.outerHTML.slice(0, 100)}`);
+  }
+  for (const node of document.querySelectorAll("body *:not(svg *, textarea, select)")) {
+    const { overflowX, overflowY } = getComputedStyle(node);
+    const scrolls = (how, is) => ["auto", "scroll"].includes(how) && is > 2;
+    const [wider, higher] = [node.scrollWidth - node.clientWidth, node.scrollHeight - node.clientHeight];
+    if ((!scrolls(overflowX, wider) && !scrolls(overflowY, higher)) || !isSeen(node)) continue;
+    // Some browsers have a stop of Tab there, not all do.
+    const stops = "button:not(:disabled), a[href], input, select, textarea, summary, [tabindex='0']";
+    if (node.matches(stops) || node.querySelector(stops)) continue;
+    found.push(`no key comes there: ${node.outerHTML.slice(0, 100)}`);
   }
   const ids = [...document.querySelectorAll("[id]")].map((n) => n.id);
   for (const id of new Set(ids.filter((id, i) => ids.indexOf(id) !== i))) found.push(`twice: ${id}`);

@@ -243,7 +243,9 @@ class _Writer:
         if overlay.problems:
             rows += self.problems(scene, overlay)
         rows.append(
-            f'<div class="sheet"><svg xmlns="http://www.w3.org/2000/svg" {svg_attributes(box)} '
+            '<div class="sheet" tabindex="0" role="group" '
+            f'aria-label="Drawing of {escape(scene.name)}">'
+            f'<svg xmlns="http://www.w3.org/2000/svg" {svg_attributes(box)} '
             f'style="--w:{_pixels(box)}px" role="group" aria-label="{escape(scene.name)}">'
         )
         return [*rows, *body, "</svg></div>", "</figure>"]
