@@ -158,6 +158,31 @@ def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
             assert words.index(flag) > words.index(undone) and flag in FLAGS
 
 
+def test_asking_a_compiler_writes_nothing(tmp_path: Path) -> None:
+    """Some compilers remove what they are to write: as root, tcc made a file of /dev/null."""
+    files = emit(
+        partition(),
+        name="cell",
+        reply_timeout_s=1.0,
+        digest="d" * 64,
+        version="9.9",
+        compiled=EMPTY,
+        net_text="x" * (c_flags.LARGE + 1),
+    )
+    (makefile,) = [f for f in files if f.path == "Makefile"]
+    (tmp_path / "Makefile").write_text(makefile.text)
+    asked = tmp_path / "asked.txt"
+    compiler = tmp_path / "cc.sh"
+    compiler.write_text(f'#!/bin/sh\necho "$@" >>{asked}\nexec cc "$@"\n')
+    compiler.chmod(0o755)
+    for name in ("net.c", "net.h", "cell_config.c"):
+        (tmp_path / name).touch()
+    command = ["make", "-n", "net.o", f"CC={compiler}"]
+    subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
+    lines = asked.read_text().splitlines()
+    assert lines and all(" -E " in line and " -o " not in line for line in lines), lines
+
+
 @pytest.mark.parametrize(
     ("more", "options", "is_quicker"),
     [(0, [], False), (1, [], True), (1, ["CFLAGS=-O2"], False)],
