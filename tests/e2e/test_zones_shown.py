@@ -169,7 +169,7 @@ def test_who_watches_from_elsewhere_is_told_of_a_broken_zone(tmp_path: Path) -> 
     tail.look()
     with Watched(found[0], tail.session, 0.0, is_from_start=True) as watched:
         assert watched.update(0.0, seen, None)["broken"] is None
-        watched.take(tail)
+        watched.take([tail])
         told = watched.update(0.0, seen, None)
         assert tail.unreadable == 0
         assert told["broken"] == {"zone": "front", **broken, "t": told["broken"]["t"]}
@@ -178,7 +178,7 @@ def test_who_watches_from_elsewhere_is_told_of_a_broken_zone(tmp_path: Path) -> 
     for wrong in ({"zone": "none"}, {"speed": "fast"}, {"point": [0.0]}, {"t": float("nan")}):
         tail.lines, tail.unreadable = [{**line, **wrong}], 0
         with Watched(found[0], tail.session, 0.0, is_from_start=True) as watched:
-            watched.take(tail)
+            watched.take([tail])
             assert watched.update(0.0, seen, None)["broken"] is None
             assert tail.unreadable == 1
 
