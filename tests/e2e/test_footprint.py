@@ -94,7 +94,7 @@ def test_a_cell_whose_messages_are_lists(tmp_path: Path) -> None:
     folder = tmp_path / "program"
     made = CliRunner().invoke(app, ["generate", str(cell), "-o", str(folder)])
     assert made.exit_code == 0, made.output
-    subprocess.run(["make", "-s", "CC=gcc", "supervisor"], cwd=folder, check=True)
+    subprocess.run(["make", "-s", "CC=gcc", "CFLAGS=-O1", "supervisor"], cwd=folder, check=True)
 
     found = footprint.measure(folder)
 
