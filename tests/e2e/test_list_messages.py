@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from helpers import list_cell, random_lists, small_cell
 from helpers.netbuilder import cpn
+from helpers.thorough import amount
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load
 from pn2code.cli.main import app
@@ -114,7 +115,7 @@ def test_lists_of_lists_are_refused(tmp_path: Path) -> None:
     assert cpn(net)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(amount(2, 40)))
 def test_what_is_verified_of_random_cells_runs(seed: int, tmp_path: Path) -> None:
     """Cells that pass lists of all kinds on and back: what comes back is what was sent."""
     net, toml, rounds = random_lists.cell(Random(seed))

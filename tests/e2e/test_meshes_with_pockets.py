@@ -27,7 +27,9 @@ def test_reaching_into_a_trough(hulls: int, tmp_path: Path) -> None:
     cell = write(tmp_path / "cell", toml=TOML.replace(TABLE, MESH.format(hulls)))
     trough(cell, top=0.7)
     found = looked(cell, tmp_path / "looked")
-    ran = pn2code("run", cell, "--backend", "bullet", "-o", tmp_path / "out")
+    ran = pn2code(
+        "run", cell, "--backend", "bullet", "--no-pictures", "--no-replay", "-o", tmp_path / "out"
+    )
     answers = {m.answer for m in found.moves}
     if hulls == 1:
         assert "no" in answers and ran.returncode != 0

@@ -17,7 +17,7 @@ from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
-SEEDS = tuple(range(2000, 2000 + amount(2, 40)))
+SEEDS = tuple(range(2000, 2000 + amount(1, 40)))
 
 
 @pytest.mark.parametrize("seed", SEEDS)
