@@ -30,6 +30,7 @@ from typing import Any
 import pn2code
 from pn2code.base.private_folder import private_folder, write_whole
 from pn2code.base.resources import cnative_folder, templates_folder
+from pn2code.base.sha256 import sealed, sha256_of, unsealed
 
 ANEW = "PN2CODE_ANEW"
 """The variable of the environment that says, with any value, that nothing is taken from what was kept."""
@@ -131,8 +132,8 @@ class Question:
         if not self._is_certain:
             return None
         try:
-            head, _, body = self.file.read_bytes().partition(b"\n")
-            if hashlib.sha256(body).hexdigest().encode() != head:
+            body = unsealed(self.file.read_bytes())
+            if body is None:
                 return None  # the file is damaged
             kept = json.loads(body)
             is_same = all(self._digest(Path(p)) == digest for p, digest in kept["files"].items())
@@ -153,14 +154,14 @@ class Question:
         body = json.dumps({"files": digests, "answer": answer}).encode()
         with suppress(OSError):  # without room it is looked for again the next time
             self.file.parent.mkdir(mode=0o700, exist_ok=True)
-            write_whole(self.file, hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
+            write_whole(self.file, sealed(body))
             _prune(self.file.parent)
 
     def _digest(self, path: Path) -> str | None:
         if not self._is_settled(path):
             return None
         try:
-            return hashlib.sha256(path.read_bytes()).hexdigest()
+            return sha256_of(path)
         except OSError:
             return None
 

@@ -9,12 +9,7 @@ from pn2code.cell.scalars import MOST_ROOM, least_values, message_scalars
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 
-MOST_CHANNELS = 128
-
-
-MOST_PEERS = 64
-
-
+MOST_CHANNELS, MOST_PEERS = 128, 64
 """What cnative/include/pn/pn_cell.h has room for."""
 
 

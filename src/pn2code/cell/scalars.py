@@ -101,8 +101,8 @@ def message_room(colsets: Iterable[Colset]) -> int:
     """For how many values a cell has room in a message, in all channels alike: for the largest token of these colour
     sets. A list without a longest length counts as nothing, and so has the least room that there is.
     """
-    found = (most_values(message_scalars(c) or ()) or 0 for c in colsets)
-    return min(max(LEAST_ROOM, *found, LEAST_ROOM), MOST_ROOM)
+    found = [most_values(message_scalars(c) or ()) or 0 for c in colsets]
+    return min(max([LEAST_ROOM, *found]), MOST_ROOM)
 
 
 def scalars_of(

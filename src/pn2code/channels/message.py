@@ -99,7 +99,7 @@ class Refused:
 
 def specs_of(partition: Partition) -> tuple[ChannelSpec, ...]:
     """The channels of a cell. A channel whose tokens are no messages is a bug of an earlier stage."""
-    specs = []
+    specs, room = [], partition.message_room
     for channel in partition.channels:
         scalars = message_scalars(partition.net.places[channel.place].colset)
         if scalars is None:
@@ -112,7 +112,7 @@ def specs_of(partition: Partition) -> tuple[ChannelSpec, ...]:
                 writer=partition.owners[channel.writer].name,
                 reader=partition.owners[channel.reader].name,
                 kind=channel.kind,
-                room=partition.message_room,
+                room=room,
             )
         )
     return tuple(specs)

@@ -248,6 +248,7 @@ def _write(
     changed: tuple[str, ...],
 ) -> None:
     """The first page, the table of traceability and the hashes."""
+    from pn2code.base.sha256 import sha256_of
     from pn2code.base.whole_file import whole_file
     from pn2code.dossier import hashes, origin, traceability
     from pn2code.dossier.listing import LISTING, listing
@@ -287,6 +288,6 @@ def _write(
     )
     with whole_file(out / INDEX) as beside:
         beside.write_text(index(chapters, facts), encoding="utf-8")
-    rows.append((INDEX, hashes.sha256(out / INDEX)))
+    rows.append((INDEX, sha256_of(out / INDEX)))
     with whole_file(out / SUMS) as beside:
         beside.write_text(hashes.listing(sorted(rows)), encoding="utf-8")

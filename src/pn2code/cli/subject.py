@@ -14,6 +14,7 @@ from pn2code import pipeline
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.base.kept_answers import KeptAnswers
+from pn2code.base.sha256 import sha256_of
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.verdict.opened import OpenNet
@@ -104,6 +105,6 @@ def _digest(text: str) -> str:
 
 def _file_digest(file: Path) -> str:
     try:
-        return hashlib.sha256(file.read_bytes()).hexdigest()
+        return sha256_of(file)
     except OSError:
         return ""

@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Iterable
 from pathlib import Path
 
-
-def sha256(path: Path) -> str:
-    """Of a file's bytes, as hexadecimal digits.
-
-    Raises:
-        OSError: it cannot be read.
-    """
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+from pn2code.base.sha256 import sha256_of
 
 
 def name_of(folder: Path, path: Path) -> str:
@@ -26,7 +17,7 @@ def name_of(folder: Path, path: Path) -> str:
 def of_files(folder: Path, paths: Iterable[Path]) -> list[tuple[str, str]]:
     """Names as seen from a folder, sorted, with hashes; what is no file is passed over."""
     files = {name_of(folder, p): p for p in paths if p.is_file()}
-    return [(name, sha256(files[name])) for name in sorted(files)]
+    return [(name, sha256_of(files[name])) for name in sorted(files)]
 
 
 def listing(rows: Iterable[tuple[str, str]]) -> str:

@@ -130,11 +130,9 @@ class Watching:
         tails.again()
         are_first = all(_is_first(text) for text in seen.texts.values())
         self._is_from_start = self._looked and are_first
-        self._watched = Watched(
-            self._cell, seen.session, seen.began, is_from_start=self._is_from_start
-        )
         self._is_running = seen.sides[self._parties[0]].state is Life.RUNS
         self._began = seen.began
+        self._watched = self._begun(seen.session)
         self._ended_at, self._is_told = None, False
         return True
 
@@ -142,11 +140,12 @@ class Watching:
         """The same session from its beginning: a trace has come whose steps were inferred already."""
         before.close()
         tails.again()
-        self._watched = Watched(
-            self._cell, before.session, self._began, is_from_start=self._is_from_start
-        )
-        self._watched.take(list(tails.look()))
-        return self._watched
+        self._watched = watched = self._begun(before.session)
+        watched.take(list(tails.look()))
+        return watched
+
+    def _begun(self, session: str) -> Watched:
+        return Watched(self._cell, session, self._began, is_from_start=self._is_from_start)
 
     def _time(self) -> float:
         """Seconds since the session began; 0 where nobody knows: then the traces say it."""

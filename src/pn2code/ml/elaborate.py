@@ -52,8 +52,6 @@ from pn2code.ml.typing.declarations import Declarations
 from pn2code.ml.typing.declared import (
     break_modules,
     declared_by,
-    names_in,
-    type_names_in,
     types_declared_by,
 )
 from pn2code.ml.typing.environment import (
@@ -61,19 +59,15 @@ from pn2code.ml.typing.environment import (
     BrokenEntry,
     BrokenType,
     ConEntry,
-    Entry,
     HiddenEntry,
-    InstanceEntry,
-    InstanceFunction,
     Scope,
     UnsupportedEntry,
-    declared_at,
     library_scope,
-    type_at,
 )
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import ICon, TypeTooLargeError, from_type
 from pn2code.ml.typing.inscriptions import Inscriptions, TypedCode
+from pn2code.ml.typing.instance_functions import InstanceFunctions
 from pn2code.ml.typing.names import Names
 from pn2code.ml.typing.patterns import Patterns
 from pn2code.ml.typing.repeats import Repeats
@@ -145,6 +139,7 @@ class Elaborator:
         patterns = Patterns(self._ctx, annotations)
         names = Names(self._ctx)
         self._expressions = Expressions(self._ctx, annotations, patterns, names)
+        self._instances = InstanceFunctions(self._ctx)
         self._declare = Declarations(self._ctx, annotations, patterns, self._expressions, names)
         self._fixities: Fixities = dict(INFIX)
         self._made: list[core.Dec] = []
@@ -334,9 +329,9 @@ class Elaborator:
             changed = self._replace_values(changed)
         before = self._ctx.errors
         self._ctx.tainted = False
-        asks = self._asks(changed)
+        asks = self._instances.asks(changed)
         before_it = dict(self._ctx.top.values) if asks else {}
-        with self._on_page(asks):
+        with self._instances.on_page(asks):
             build = self._declare.declare(changed)
         if self._ctx.errors == before and not self._ctx.tainted:
             self._ctx.resolve_pending()
@@ -369,7 +364,7 @@ class Elaborator:
             self._ctx.unifier.close(weak)
         self._ctx.weak.clear()
         if asks:
-            self._declare_anew(changed, before_it)
+            self._instances.declare_anew(changed, before_it)
             return
         for one in made:
             if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
@@ -380,56 +375,6 @@ class Elaborator:
                     self._bodies[one.pattern.symbol.uid] = one.value
             elif isinstance(one, core.RecBind):
                 self._bodies.update({symbol.uid: body for symbol, body in one.bindings})
-
-    def _declare_anew(self, dec: s.Dec, before: Mapping[str, Entry]) -> None:
-        """Keep a declaration of functions that ask for `inst ()`: it is declared again where one of them is used.
-
-        Args:
-            dec: the declaration.
-            before: what the net's own names stood for before it.
-        """
-        top = self._ctx.top
-        names, bound = names_in(dec)
-        own = declared_by(dec)
-        known = {name: declared_at(top, name) for name in (names | bound) - own}
-        if isinstance(dec, s.ValDec):  # `val f = fn x => f x`: its own names may stand for others
-            earlier = {n for b in dec.bindings if not b.recursive for n in names_in(b.value)[0]}
-            known |= {name: before.get(name, top.parent) for name in earlier & own}
-        types = {name: type_at(top, name) for name in type_names_in(dec)}
-        found = (before.get(name) for name in sorted(names - own))
-        needs = tuple(entry for entry in found if isinstance(entry, InstanceFunction))
-        for name in own:
-            top.values[name] = InstanceFunction(name, dec, known, types, bound, needs)
-
-    def _asks(self, dec: s.Dec) -> bool:
-        """Whether it is a declaration of functions alone that ask for `inst ()`."""
-        is_of_functions = isinstance(dec, s.FunDec) or (
-            isinstance(dec, s.ValDec)
-            and all(isinstance(b.value, s.FnExp | s.NameExp) for b in dec.bindings)
-        )
-        if not is_of_functions:
-            return False
-        names, bound = names_in(dec)
-        free = names - bound
-        values = self._ctx.top.values
-        return ("inst" in free and "inst" not in values) or any(
-            isinstance(values.get(name), InstanceFunction) for name in free
-        )
-
-    @contextmanager
-    def _on_page(self, asks: bool) -> Iterator[None]:
-        """While functions that ask for `inst ()` are declared, they know it."""
-        values = self._ctx.top.values
-        is_new = asks and "inst" not in values
-        if is_new:
-            values["inst"] = InstanceEntry()
-        self._ctx.on_page = asks
-        try:
-            yield
-        finally:
-            self._ctx.on_page = False
-            if is_new:
-                del values["inst"]
 
     def unreadable(self, values: Sequence[str], types: Sequence[str]) -> None:
         """Names that declarations declare about which all has been said; nothing is said about their uses."""

@@ -156,20 +156,10 @@ class Finder:
             return list(self.doubtful[text])
         if text in self.paths:
             return [self.paths[text]]
-        own = [i for i, (path, short) in enumerate(self._own) if text == short or _ends(path, text)]
+        own = {i for i, (path, short) in enumerate(self._own) if text == short or _ends(path, text)}
         if own:
-            own = sorted(
-                {
-                    *own,
-                    *(
-                        i
-                        for path, found in self.doubtful.items()
-                        if _ends(path, text)
-                        for i in found
-                    ),
-                }
-            )
-        return own or sorted({x.index for x in self._all if _ends(x.path, text)})
+            own.update(*(found for path, found in self.doubtful.items() if _ends(path, text)))
+        return sorted(own or {x.index for x in self._all if _ends(x.path, text)})
 
 
 def _unique(instances: Iterable[Instance]) -> dict[str, int]:

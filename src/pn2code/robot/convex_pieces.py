@@ -28,6 +28,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.base.private_folder import private_folder, write_whole
+from pn2code.base.sha256 import sealed, unsealed
 from pn2code.robot.mesh_files import NoMesh, Points, Triangles, read
 from pn2code.robot.transforms import Array
 
@@ -53,9 +54,7 @@ class NoPieces(ValueError):  # noqa: N818
 @lru_cache(maxsize=64)
 def pieces(path: Path, most: int) -> tuple[Array, ...]:
     """The points of at most so many convex pieces that cover a mesh file."""
-    from importlib import (
-        metadata,  # takes as long as reading a small net, and few cells have such meshes
-    )
+    from importlib import metadata  # as slow as reading a small net, and rarely needed
 
     try:
         points, triangles = read(path)
@@ -80,8 +79,7 @@ def pieces(path: Path, most: int) -> tuple[Array, ...]:
     out = _best(points, triangles, _divided(points, triangles, most))
     if kept is not None:
         with suppress(OSError):  # it is made again
-            body = json.dumps([p.tolist() for p in out]).encode()
-            write_whole(kept, hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
+            write_whole(kept, sealed(json.dumps([p.tolist() for p in out]).encode()))
     return out
 
 
@@ -99,8 +97,8 @@ def _is_closed(points: Points, triangles: Triangles) -> bool:
 def _kept(path: Path) -> tuple[Array, ...]:
     """What was kept; () if there is nothing, or it is not what was written: other pieces cover another thing."""
     try:
-        head, _, body = path.read_bytes().partition(b"\n")
-        if hashlib.sha256(body).hexdigest().encode() != head:
+        body = unsealed(path.read_bytes())
+        if body is None:
             return ()
         return tuple(np.array(p, float).reshape(-1, 3) for p in json.loads(body))
     except (OSError, ValueError):

@@ -203,10 +203,8 @@ def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
             return _longer(_source(of, taken), -1)
         case core.Apply(core.Builtin("List.rev"), of):
             return _source(of, taken)
-        case core.Apply(core.Con(constructor), core.RecordExp(((_, item), (_, others)))) if (
-            constructor.name == "::"
-        ):
-            one, rest = _source(item, taken), _source(others, taken)
+        case core.Apply() if (both := _cons(e)) is not None:
+            one, rest = (_source(x, taken) for x in both)
             whole = None if rest is None else rest.whole
             is_same = one is not None and whole is not None and whole.kind is Kind.LIST
             is_same = is_same and whole is not None and whole.components[0] == one

@@ -25,14 +25,14 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from fnmatch import fnmatch
 from functools import cache, lru_cache
 from pathlib import Path
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.base.os_reason import os_reason
 from pn2code.base.private_folder import private_folder, without_folder, write_whole
+from pn2code.base.sha256 import sha256_of
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import c_flags, runtime
@@ -455,7 +455,7 @@ def _sum_of(path: Path) -> Path:
 def _is_sound(path: Path) -> bool:
     """Whether a file is as it was kept."""
     try:
-        return _sum_of(path).read_bytes() == _sum(path)
+        return _sum_of(path).read_bytes() == sha256_of(path).encode()
     except OSError:
         return False
 
@@ -466,7 +466,7 @@ def _keep(made: Path, path: Path) -> None:
     Raises:
         OSError: there is no room.
     """
-    write_whole(_sum_of(path), _sum(made))
+    write_whole(_sum_of(path), sha256_of(made).encode())
     made.replace(path)
 
 
@@ -474,11 +474,6 @@ def _use(path: Path) -> None:
     """Notes that a file was used."""
     for each in (path, _sum_of(path)):
         os.utime(each)
-
-
-def _sum(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
 def _put(room: Path, files: Sequence[OutputFile]) -> None:

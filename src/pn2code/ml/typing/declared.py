@@ -55,7 +55,7 @@ def _nodes(part: object) -> Iterator[object]:
         one = todo.pop()
         if isinstance(one, tuple):
             todo.extend(one)
-        elif dataclasses.is_dataclass(one) and not isinstance(one, Span):
+        elif s.is_node(one) and dataclasses.is_dataclass(one):
             yield one
             todo.extend(getattr(one, field.name) for field in dataclasses.fields(one))
 
