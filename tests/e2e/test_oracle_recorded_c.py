@@ -52,6 +52,11 @@ FOUND = [
     ('Base64.encode (Byte.stringToBytes "pleasure.")', "cGxlYXN1cmUu"),
     ('String.concatWith "," (map Word.toString (UTF8.explode "a\\195\\164\\226\\130\\172")) ^ UTF8.toString 0wx20AC',
      "61,E4,20AC\\u20AC"),
+    ('valOf (Option.map Date.toString (Date.fromString "Sat Jan 32 12:30:45 1000"))', "Sat Feb  1 12:30:45 1000"),
+    ("Date.toString (Date.date {year = 0, month = Date.Dec, day = 31, hour = 12, minute = 0, second = 0, "
+     'offset = NONE}) handle Date.Date => "no date"', "no date"),
+    ("IntInf.toString (Time.toSeconds (Date.toTime (Date.date {year = 2038, month = Date.Jan, day = 19, hour = 3, "
+     'minute = 14, second = 8, offset = NONE}))) handle Date.Date => "no time"', "no time"),
     ("ANSITerm.toString [ANSITerm.BF, ANSITerm.BG ANSITerm.Cyan] ^ \"x\"", "\033[1;46mx"),
     ("Real.toString (RealOrderStats.median (Array.fromList [4.0, 1.0, 3.0, 9.0]))", "3.5"),
     ("let open UnivariateStats val e = evaluate (foldl hadd (hempty ()) [1.0, 2.0, 6.0]) "
