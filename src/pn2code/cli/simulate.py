@@ -143,6 +143,16 @@ def simulate(
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     files: FilesOption = None,
+    sockets: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            min=0,
+            help="Let code segments talk to other programs (Comms/CPN of CPN Tools), and wait at most so long each time. "
+            "Without this option a run stops there.",
+            show_default=False,
+        ),
+    ] = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -193,6 +203,7 @@ def simulate(
             monitors=program,
             breakpoints=breakpoints,
             files=files,
+            sockets=sockets,
             progress=progress.update,
             interrupted=interrupts.is_wanted,
         )

@@ -55,5 +55,7 @@ Inscriptions and expressions also differ in the following, each on purpose:
   run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets and hash tables are there.
 * **`RealOrderStats`** leaves its array as it is; the engine's sorts a part of it, by random numbers, so that `UnivariateStats.averageDeviation` may have another last digit after `median`.
 * **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0.
+* **Connections** (`openConnection`, `receive`, ...) are opened by `simulate --sockets` only, in code segments only. Sending over one that the other side has closed raises
+  `OS.SysErr`; the engine ends. Waiting has an end here.
 * **Time zones**: dates are those of UTC.
 """

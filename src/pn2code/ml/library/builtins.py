@@ -181,7 +181,7 @@ TOP_LEVEL: dict[str, str] = {
     "closeConnection": "ConnManagementLayer.closeConnection",
     "send": "ConnManagementLayer.send",
     "receive": "ConnManagementLayer.receive",
-    "canReceive": "ConnManagementLayer.canReceive",
+    "canreceive": "ConnManagementLayer.canreceive",
     "stringEncode": "ConnManagementLayer.stringEncode",
     "stringDecode": "ConnManagementLayer.stringDecode",
     "integerEncode": "ConnManagementLayer.integerEncode",
@@ -252,6 +252,9 @@ HIDDEN: frozenset[str] = frozenset(
     {
         *(full for full in TOP_LEVEL.values() if full.split(".")[0] in ("Ms", "Ref", "Time", "Random")),
         "Time.token@+", "Time.token@++",
+        *(f"ConnManagementLayer.{name}" for name in (
+            "stringEncode", "stringDecode", "integerEncode", "integerDecode",
+        )),
         *(f"List.{name}" for name in (
             "mem", "remdupl", "rm", "rmall", "pos", "contains", "contains_all", "intersect", "union", "listsub", "ins",
             "ins_new", "sort", "unique_sort", "fmap", "mapfilter", "predlist",
