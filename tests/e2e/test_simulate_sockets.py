@@ -229,6 +229,12 @@ def test_the_compiled_engine_has_none(tmp_path: Path) -> None:
     assert "the compiled engine cannot make this run: it may open connections" in told
 
 
+@pytest.mark.parametrize("seconds", ["nan", "inf", "-1"])
+def test_a_wait_that_is_none(tmp_path: Path, seconds: str) -> None:
+    _, told = run(tmp_path, net_with('"x"'), f"--sockets={seconds}", code=2)
+    assert "it is a number of seconds from 0 to 86400" in " ".join(told.split())
+
+
 def test_names_that_the_engine_has_not(tmp_path: Path) -> None:
     for name in (
         "canReceive",

@@ -35,6 +35,7 @@ from pn2code.cli.options import (
 from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.codes import TRACE_REFUSED
+from pn2code.semantics.evaluation.connections import LONGEST_WAIT
 from pn2code.semantics.game.report import places
 from pn2code.simulate.choose import Ready, Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
@@ -147,8 +148,7 @@ def simulate(
         float | None,
         typer.Option(
             metavar="SECONDS",
-            min=0,
-            help="Let code segments talk to other programs (Comms/CPN of CPN Tools), and wait at most so long each time. "
+            help="Let code segments talk to other programs (Comms/CPN), and wait at most so long each time. "
             "Without this option a run stops there.",
             show_default=False,
         ),
@@ -165,6 +165,10 @@ def simulate(
     if report is not None:
         check_kind(report, PAGES, "--report")
         _check_writable(report, REPORT_UNWRITABLE, f"`{report}`", form)
+    if sockets is not None and not 0 <= sockets <= LONGEST_WAIT:
+        raise typer.BadParameter(
+            f"it is a number of seconds from 0 to {LONGEST_WAIT}", param_hint="--sockets"
+        )
     if replications is not None and (trace is not None or replay is not None):
         raise typer.BadParameter(
             "a trace is of one run: leave one of them out",

@@ -24,6 +24,8 @@ from pn2code.semantics.values.data import MlUnavailable
 
 SEGMENT = 127
 """Bytes of data in a segment."""
+LONGEST_WAIT = 86_400
+"""Most seconds that one may ask to wait."""
 MORE = 255
 """The first byte of a segment that another one follows."""
 _SLICE = 0.1
