@@ -52,6 +52,13 @@ FOUND = [
     ('Base64.encode (Byte.stringToBytes "pleasure.")', "cGxlYXN1cmUu"),
     ('String.concatWith "," (map Word.toString (UTF8.explode "a\\195\\164\\226\\130\\172")) ^ UTF8.toString 0wx20AC',
      "61,E4,20AC\\u20AC"),
+    ("let structure Q = LeftPriorityQFn (struct type priority = int val compare = Int.compare "
+     "type item = int * string fun priority (n : int, _ : string) = n end) "
+     'fun all q = case Q.next q of SOME ((_, s), rest) => s ^ all rest | NONE => "" '
+     'in all (Q.insert ((2, "d"), Q.fromList [(1, "a"), (3, "b"), (2, "c")])) end', "bdca"),
+    ("let structure S = HashSetFn (struct type hash_key = int fun hashVal n = Word.fromInt (7 * n) "
+     "fun sameKey (a, b : int) = a = b end) val s = S.mkFromList [5, 3, 5, 40] "
+     'in S.without (s, 3); String.concatWith "," (map Int.toString (S.listItems s)) end', "5,40"),
     ('valOf (Option.map Date.toString (Date.fromString "Sat Jan 32 12:30:45 1000"))', "Sat Feb  1 12:30:45 1000"),
     ("Date.toString (Date.date {year = 0, month = Date.Dec, day = 31, hour = 12, minute = 0, second = 0, "
      'offset = NONE}) handle Date.Date => "no date"', "no date"),

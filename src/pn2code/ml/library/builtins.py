@@ -311,6 +311,14 @@ ABSENT_VALUES: frozenset[str] = frozenset(
 )  # fmt: skip
 """What else the library of SML/NJ has and pn2code has not: values, constructors, exceptions."""
 
+ABSENT_FUNCTORS: frozenset[str] = frozenset(
+    {
+        *("ArrayQSortFn", "BSearchFn", "DynamicArrayFn", "GraphSCCFn", "Hash2TableFn"),
+        *("IntervalSetFn", "KeywordFn", "MonoArrayFn"),
+    }
+)
+"""Functors that CPN Tools has and pn2code has not."""
+
 UNSUPPORTED_NAMES: frozenset[str] = frozenset({"inst", "use"})
 """Top-level names of CPN Tools that are not supported; a net may declare its own."""
 
