@@ -243,3 +243,23 @@ def test_names_that_the_engine_has_not(tmp_path: Path) -> None:
     ):
         path = write(net_with(f'(ignore {name}; "x")'), tmp_path / "Talk.cpn")
         assert pn2code("check", str(path)).returncode == 1, name
+
+
+def test_the_type_of_their_names(tmp_path: Path) -> None:
+    text = net_with('link ("c", 1)').replace(
+        "var s: STRING;",
+        "var s: STRING;\n          colset Link = string;\n"
+        '          fun link (c : Connection, n) = (if n < 0 then closeConnection c else (); c ^ "!");',
+    )
+    outcome, _ = run(tmp_path, text, "--sockets", "1")
+    assert said(outcome) == '1`"c!"'
+
+
+def test_a_colour_set_may_have_the_name_of_that_type(tmp_path: Path) -> None:
+    text = net_with('if n = 3 then "three" else "no"').replace(
+        "var s: STRING;",
+        "var s: STRING;\n          colset Connection = int with 1..9;\n"
+        "          val n = Connection.size () - 6;",
+    )
+    outcome, _ = run(tmp_path, text)
+    assert said(outcome) == '1`"three"'
