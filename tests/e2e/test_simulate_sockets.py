@@ -17,6 +17,7 @@ import pytest
 
 from helpers.netbuilder import write
 from helpers.processes import pn2code
+from pn2code.verify.answers.reasons import raises
 
 
 def net_with(action: str) -> str:
@@ -263,3 +264,10 @@ def test_a_colour_set_may_have_the_name_of_that_type(tmp_path: Path) -> None:
     )
     outcome, _ = run(tmp_path, text)
     assert said(outcome) == '1`"three"'
+
+
+def test_verify_says_that_such_a_function_is_not_available() -> None:
+    said_by_the_net = "`ConnManagementLayer.send` is not available here: sockets are closed"
+    assert raises(said_by_the_net) == (
+        "calls `ConnManagementLayer.send`, which is not available here (sockets are closed)"
+    )
