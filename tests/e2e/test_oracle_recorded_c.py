@@ -52,6 +52,9 @@ FOUND = [
     ('Base64.encode (Byte.stringToBytes "pleasure.")', "cGxlYXN1cmUu"),
     ('String.concatWith "," (map Word.toString (UTF8.explode "a\\195\\164\\226\\130\\172")) ^ UTF8.toString 0wx20AC',
      "61,E4,20AC\\u20AC"),
+    ("let fun all q = case FifoQueue.peek q of NONE => nil | SOME x => x :: all (#1 (FifoQueue.dequeue q)) in "
+     'String.concatWith "," (map Int.toString (#2 (Stack.dequeue (Stack.enqueue (Stack.empty, 9))) '
+     ":: all (List.foldl (fn (x, q) => FifoQueue.enqueue (q, x)) FifoQueue.empty [1, 2, 3]))) end", "9,1,2,3"),
     ("let structure Q = LeftPriorityQFn (struct type priority = int val compare = Int.compare "
      "type item = int * string fun priority (n : int, _ : string) = n end) "
      'fun all q = case Q.next q of SOME ((_, s), rest) => s ^ all rest | NONE => "" '
