@@ -52,6 +52,21 @@ FOUND = [
     ('Base64.encode (Byte.stringToBytes "pleasure.")', "cGxlYXN1cmUu"),
     ('String.concatWith "," (map Word.toString (UTF8.explode "a\\195\\164\\226\\130\\172")) ^ UTF8.toString 0wx20AC',
      "61,E4,20AC\\u20AC"),
+    ("let fun all q = case FifoQueue.peek q of NONE => nil | SOME x => x :: all (#1 (FifoQueue.dequeue q)) in "
+     'String.concatWith "," (map Int.toString (#2 (Stack.dequeue (Stack.enqueue (Stack.empty, 9))) '
+     ":: all (List.foldl (fn (x, q) => FifoQueue.enqueue (q, x)) FifoQueue.empty [1, 2, 3]))) end", "9,1,2,3"),
+    ("let structure Q = LeftPriorityQFn (struct type priority = int val compare = Int.compare "
+     "type item = int * string fun priority (n : int, _ : string) = n end) "
+     'fun all q = case Q.next q of SOME ((_, s), rest) => s ^ all rest | NONE => "" '
+     'in all (Q.insert ((2, "d"), Q.fromList [(1, "a"), (3, "b"), (2, "c")])) end', "bdca"),
+    ("let structure S = HashSetFn (struct type hash_key = int fun hashVal n = Word.fromInt (7 * n) "
+     "fun sameKey (a, b : int) = a = b end) val s = S.mkFromList [5, 3, 5, 40] "
+     'in S.without (s, 3); String.concatWith "," (map Int.toString (S.listItems s)) end', "40,5"),
+    ('valOf (Option.map Date.toString (Date.fromString "Sat Jan 32 12:30:45 1000"))', "Sat Feb  1 12:30:45 1000"),
+    ("Date.toString (Date.date {year = 0, month = Date.Dec, day = 31, hour = 12, minute = 0, second = 0, "
+     'offset = NONE}) handle Date.Date => "no date"', "no date"),
+    ("IntInf.toString (Time.toSeconds (Date.toTime (Date.date {year = 2038, month = Date.Jan, day = 19, hour = 3, "
+     'minute = 14, second = 8, offset = NONE}))) handle Date.Date => "no time"', "no time"),
     ("ANSITerm.toString [ANSITerm.BF, ANSITerm.BG ANSITerm.Cyan] ^ \"x\"", "\033[1;46mx"),
     ("Real.toString (RealOrderStats.median (Array.fromList [4.0, 1.0, 3.0, 9.0]))", "3.5"),
     ("let open UnivariateStats val e = evaluate (foldl hadd (hempty ()) [1.0, 2.0, 6.0]) "

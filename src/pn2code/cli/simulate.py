@@ -35,6 +35,7 @@ from pn2code.cli.options import (
 from pn2code.cli.traces_there import traces_there
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.codes import TRACE_REFUSED
+from pn2code.semantics.evaluation.connections import LONGEST_WAIT
 from pn2code.semantics.game.report import places
 from pn2code.simulate.choose import Ready, Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
@@ -143,6 +144,15 @@ def simulate(
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     files: FilesOption = None,
+    sockets: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            help="Let code segments talk to other programs (Comms/CPN), and wait at most so long each time. "
+            "Without this option a run stops there.",
+            show_default=False,
+        ),
+    ] = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -155,6 +165,10 @@ def simulate(
     if report is not None:
         check_kind(report, PAGES, "--report")
         _check_writable(report, REPORT_UNWRITABLE, f"`{report}`", form)
+    if sockets is not None and not 0 <= sockets <= LONGEST_WAIT:
+        raise typer.BadParameter(
+            f"it is a number of seconds from 0 to {LONGEST_WAIT}", param_hint="--sockets"
+        )
     if replications is not None and (trace is not None or replay is not None):
         raise typer.BadParameter(
             "a trace is of one run: leave one of them out",
@@ -193,6 +207,7 @@ def simulate(
             monitors=program,
             breakpoints=breakpoints,
             files=files,
+            sockets=sockets,
             progress=progress.update,
             interrupted=interrupts.is_wanted,
         )

@@ -52,8 +52,11 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **Multi-sets of many millions of tokens** (``1073741823`e``) are lists in the engine, which gives no answer for them; here they are numbers.
 * **Library**: of the 345 structures that the engine has in scope some 100 are there; of the others (its compiler, its inner parts, the state-space library, ...)
   each function is refused by its name (`unsupported-function`). So is `IOUtil`, which changes where the standard streams go. Of `SMLofNJ`, `BinIO`, `Socket` and `Unix` `check` warns, and a
-  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets and hash tables are there.
+  run stops where one is applied; so it does at `SMLofNJ.Cont.callcc`. Of the functors of SML/NJ those of maps, sets, hash tables and queues with
+  priorities are there; `isSubset` of `HashSetFn` raises `Subscript` in the engine, and works here.
 * **`RealOrderStats`** leaves its array as it is; the engine's sorts a part of it, by random numbers, so that `UnivariateStats.averageDeviation` may have another last digit after `median`.
 * **`Real.split` and `Real.realMod`** of reals below some 1.1E~16 give them; in the engine what is behind the point of these is 0.0.
+* **Connections** (`openConnection`, `receive`, ...) are opened by `simulate --sockets` only, in code segments only. Sending over one that the other side has closed raises
+  `OS.SysErr`; the engine ends. Waiting has an end here.
 * **Time zones**: dates are those of UTC.
 """

@@ -97,7 +97,7 @@ def simulate(
         TraceRefusedError: the trace that is to be repeated is none.
         OSError: it cannot be read.
     """
-    if wish is Wish.REFERENCE:
+    if wish is Wish.REFERENCE or (wish is Wish.ANY and request.sockets is not None):
         return reference.run(request, d)
     why = _why_not_compiled(request)
     if why:
@@ -186,6 +186,8 @@ def _why_not_compiled(request: Request) -> str:
         and Trace.open(request.replay, request.net).header.initial
     ):
         return "the trace has initial markings of its own"
+    if request.sockets is not None:
+        return "it may open connections to other programs"
     program = request.monitors
     if program is None or not program.monitors:
         return ""

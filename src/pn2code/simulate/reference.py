@@ -13,6 +13,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.monitors.folder import Folder
 from pn2code.monitors.watch import Breakpoint, Watch
 from pn2code.net.flat import FlatTransition
+from pn2code.semantics.evaluation.connections import Connections
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.random import CHOICE, RandomStream
 from pn2code.semantics.game.enabling import GameError
@@ -64,6 +65,9 @@ class ReferenceRun:
         self._refusal = ""
         self._occurred: BindingElement | None = None
         self._folder = Folder(Files(request.files), request.output)
+        self._connections = (
+            None if request.sockets is None else Connections(request.sockets, request.interrupted)
+        )
 
     # --- a whole run -----------------------------------------------------------------------------
 
@@ -80,7 +84,9 @@ class ReferenceRun:
         return self.outcome("reference", why, time.perf_counter() - began)
 
     def close(self) -> None:
-        """Closes all files."""
+        """Closes all files and connections."""
+        if self._connections is not None:
+            self._connections.close_all()
         if self.trace_file is not None:
             self.trace_file.close()
         self._folder.close()
@@ -125,7 +131,7 @@ class ReferenceRun:
                 seed=self.seed,
                 still=given is not None and given.header.still,
                 output=self.output.write,
-                files=Files(request.files, self.output.write),
+                files=Files(request.files, self.output.write, self._connections),
             )
         except GameError as error:
             return self._fail(error)

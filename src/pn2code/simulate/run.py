@@ -43,6 +43,7 @@ class Request:
         monitors: the monitors at work; None: none.
         breakpoints: whether breakpoints stop the run.
         files: the folder that the net may use.
+        sockets: seconds that the net may wait for other programs, each time; None: it has no connections to them.
         output: where the files of its monitors are put in that folder.
         progress: is told how the run goes on.
         interrupted: asked between steps: shall the run end?
@@ -59,6 +60,7 @@ class Request:
     monitors: MonitorProgram | None = None
     breakpoints: bool = True
     files: Path | None = None
+    sockets: float | None = None
     output: str = OUTPUT
     progress: Progress = lambda steps, time: None
     interrupted: Callable[[], bool] = lambda: False

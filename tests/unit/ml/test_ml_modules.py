@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from helpers.ml import Ml
+from helpers.netbuilder import diagnose
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
 from pn2code.diagnostics.render import report
 from pn2code.ml.elaborate import Elaborator
@@ -245,3 +246,13 @@ def test_large_matches_are_looked_at_or_left() -> None:
     m.ml("fun " + " | ".join(f"g {row} = {i}" for i, row in enumerate(rows)))
     assert [x.message for x in m.d][:1] == ["function `f` does not cover `10000`"]
     assert not m.d.has_errors
+
+
+def test_a_functor_that_cpn_tools_has_is_refused_by_name() -> None:
+    d = diagnose(
+        "net N\n  standard\n"
+        "  structure M = Hash2TableFn (struct end);\n  page Top\n    place P : INT = 1`1\n"
+    )
+    assert [(e.code, e.message) for e in d.errors] == [
+        ("unsupported-function", "functor `Hash2TableFn` is not supported")
+    ]

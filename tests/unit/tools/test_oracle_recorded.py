@@ -14,7 +14,7 @@ from helpers.netbuilder import write
 LARGE = """val it'before = (Format.format, Scan.sscanf, Queue.dequeue, URef.equal, PackWord32Big.subVec,
     SMLofNJ.Susp.delay, String.scan, Byte.unpackString, CharMap.mkCharMap, Vector.toList, GetOpt.usageInfo,
     Base64.encode, UTF8.size, ANSITerm.toString, UnivariateStats.N, SimpleURef.equal, PathUtil.findFile,
-    FormatComb.padl, SplayTree.join);
+    FormatComb.padl, SplayTree.join, Date.scan);
 fun it'table () = HashTable.mkTable (Word.fromInt, op =) (4, Fail "none") : (int, int) HashTable.hash_table;
 """
 """Structures of the library that many expressions mention: they are typed once, not for each of them."""

@@ -34,6 +34,7 @@ structure Date = struct
     fun made (days, seconds, offset, isDst) =
         let val (year, month, day) = of_days (days + seconds div 86400)
             val s = seconds mod 86400
+            val _ = if year < 1 then raise Date else ()
         in DATE {year = year, month = month, day = day, hour = s div 3600, minute = s div 60 mod 60, second = s mod 60,
                  offset = offset, isDst = isDst}
         end
@@ -41,7 +42,8 @@ structure Date = struct
         let val shift = case offset of NONE => 0 | SOME t => IntInf.toInt (IntInf.rem (Time.toSeconds t, 86400))
             val s = minute * 60 + second + shift
             val days = days_of (year, number month, 1) + day - 1 + hour div 24
-        in made (days, hour mod 24 * 3600 + s, offset, NONE) end
+            val kept = case offset of NONE => NONE | SOME _ => SOME (Time.fromSeconds (IntInf.fromInt shift))
+        in made (days, hour mod 24 * 3600 + s, kept, NONE) end
 
     fun year (DATE d) = #year d
     fun month (DATE d) = List.nth (months, #month d - 1)
@@ -57,14 +59,20 @@ structure Date = struct
     fun yearDay d = days d - days_of (year d, 1, 1)
     fun seconds (DATE d) = #hour d * 3600 + #minute d * 60 + #second d
 
+    (* Times are those of a clock of 32 bits, as in the engine: from 1901 to 2038 backwards, from 1970 on forwards. *)
+    val half = IntInf.fromInt 1073741823 + IntInf.fromInt 1
+    fun in_clock s = s + half + half >= IntInf.fromInt 0 andalso s - half < half
     fun toTime d =
-        Time.fromSeconds (IntInf.fromInt (days d - epoch) * IntInf.fromInt 86400 + IntInf.fromInt (seconds d))
-    fun from (t, offset) =
+        let val s = IntInf.fromInt (days d - epoch) * IntInf.fromInt 86400 + IntInf.fromInt (seconds d)
+        in if s < IntInf.fromInt 0 orelse not (in_clock s) then raise Date else Time.fromSeconds s end
+    fun fromTimeUniv t =
         let val s = Time.toSeconds t
             val day = IntInf.fromInt 86400
-        in made (epoch + IntInf.toInt (IntInf.div (s, day)), IntInf.toInt (IntInf.mod (s, day)), offset, SOME false) end
-    fun fromTimeUniv t = from (t, SOME Time.zeroTime)
-    fun fromTimeLocal t = from (t, NONE)
+            val _ = if in_clock s then () else raise Overflow
+            val n = epoch + IntInf.toInt (IntInf.div (s, day))
+        in made (n, IntInf.toInt (IntInf.mod (s, day)), SOME Time.zeroTime, SOME false) end
+    fun fromTimeLocal t =
+        let val d = fromTimeUniv t in if Time.toSeconds t < IntInf.fromInt 0 then raise Date else d end
     fun localOffset () = Time.zeroTime
 
     fun compare (a, b) =
@@ -77,7 +85,9 @@ structure Date = struct
     fun clock d = digits (hour d) 2 ^ ":" ^ digits (minute d) 2 ^ ":" ^ digits (second d) 2
     fun date_of d =
         short (weekday_name d) ^ " " ^ short (month_name d) ^ " " ^ StringCvt.padLeft #" " 2 (Int.toString (day d))
-    fun toString d = date_of d ^ " " ^ clock d ^ " " ^ digits (year d) 4
+    (* The engine takes 24 characters of a text of the C library, whatever the length of the year. *)
+    fun toString d =
+        String.substring (date_of d ^ " " ^ clock d ^ " " ^ Int.toString (year d) ^ "\n\000\000", 0, 24)
     fun written (c, d as DATE {month = m, ...}) =
         case c of
             #"a" => short (weekday_name d)
@@ -100,7 +110,7 @@ structure Date = struct
           | #"X" => clock d
           | #"y" => digits (year d mod 100) 2
           | #"Y" => Int.toString (year d)
-          | #"Z" => "UTC"
+          | #"Z" => (case isDst d of SOME _ => "UTC" | NONE => "")
           | other => String.str other
     fun fmt text d =
         let fun go (#"%" :: c :: rest, out) = go (rest, written (c, d) :: out)
@@ -108,23 +118,42 @@ structure Date = struct
               | go (nil, out) = String.concat (rev out)
         in go (explode text, nil) end
 
-    fun fromString text =
-        let fun part (i, n) = valOf (Int.fromString (String.substring (text, i, n)))
+    (* What stands before the year has a place for each character: "Sat Jan  1 00:00:00 ". *)
+    fun is_written text =
+        let fun all (nil, nil) = true
+              | all (#"d" :: form, c :: rest) = Char.isDigit c andalso all (form, rest)
+              | all (#"D" :: form, c :: rest) = (c = #" " orelse Char.isDigit c) andalso all (form, rest)
+              | all (#"?" :: form, _ :: rest) = all (form, rest)
+              | all (x :: form, c :: rest) = x = c andalso all (form, rest)
+              | all _ = false
+        in all (explode "??? ??? Dd dd:dd:dd ", explode text) end
+    fun of_parts (text, year) =
+        let fun part i = valOf (Int.fromString (String.substring (text, i, 2)))
             fun find (name, x :: names, m :: rest) = if short x = name then m else find (name, names, rest)
               | find _ = raise Date
             val is_day = List.exists (fn name => short name = String.substring (text, 0, 3)) weekday_names
         in if not is_day then NONE
-           else SOME (date {year = part (20, 4), month = find (String.substring (text, 4, 3), month_names, months),
-                       day = part (8, 2), hour = part (11, 2), minute = part (14, 2), second = part (17, 2),
-                       offset = NONE})
+           else SOME (date {year = year, month = find (String.substring (text, 4, 3), month_names, months),
+                       day = part 8, hour = part 11, minute = part 14, second = part 17, offset = NONE})
         end
-        handle Subscript => NONE | Option => NONE | Date => NONE
+        handle Date => NONE | Overflow => NONE
+    fun fromString text =
+        if String.size text < 20 orelse not (is_written (String.substring (text, 0, 20))) then NONE
+        else
+            case Int.fromString (String.extract (text, 20, NONE)) of
+                SOME year => of_parts (text, year)
+              | NONE => NONE
     fun scan getc stream =
         let fun take (0, rest, out) = SOME (implode (rev out), rest)
               | take (n, rest, out) = (case getc rest of SOME (c, more) => take (n - 1, more, c :: out) | NONE => NONE)
         in
-            case take (24, stream, nil) of
-                SOME (text, rest) => (case fromString text of SOME d => SOME (d, rest) | NONE => NONE)
+            case take (20, stream, nil) of
+                SOME (text, rest) =>
+                    if not (is_written text) then NONE
+                    else
+                        (case Int.scan StringCvt.DEC getc rest of
+                            SOME (year, more) => (case of_parts (text, year) of SOME d => SOME (d, more) | NONE => NONE)
+                          | NONE => NONE)
               | NONE => NONE
         end
 end

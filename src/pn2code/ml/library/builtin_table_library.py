@@ -315,13 +315,13 @@ Random.randNat : Random.rand -> int ; an int that is not negative
 Random.randReal : Random.rand -> real ; 0 <= x < 1
 Random.randRange : int * int -> Random.rand -> int ; between the two, inclusive
 
-== sockets to other programs are not opened
+== sockets to other programs are opened by `simulate --sockets` only
 ConnManagementLayer.openConnection : string * string * int -> unit ; connects: name, host, port
 ConnManagementLayer.acceptConnection : string * int -> unit ; waits for a connection: name, port
 ConnManagementLayer.closeConnection : string -> unit ; closes a connection
 ConnManagementLayer.send : string * 'a * ('a -> Word8Vector.vector) -> unit ; sends a value
 ConnManagementLayer.receive : string * (Word8Vector.vector -> 'a) -> 'a ; waits for a value
-ConnManagementLayer.canReceive : string -> bool ; whether there is something to receive
+ConnManagementLayer.canreceive : string -> bool ; whether there is something to receive
 
 == other programs are not run, and a net does not end the run
 OS.Process.system : string -> OS.Process.status ; runs a command

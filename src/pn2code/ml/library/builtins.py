@@ -181,7 +181,7 @@ TOP_LEVEL: dict[str, str] = {
     "closeConnection": "ConnManagementLayer.closeConnection",
     "send": "ConnManagementLayer.send",
     "receive": "ConnManagementLayer.receive",
-    "canReceive": "ConnManagementLayer.canReceive",
+    "canreceive": "ConnManagementLayer.canreceive",
     "stringEncode": "ConnManagementLayer.stringEncode",
     "stringDecode": "ConnManagementLayer.stringDecode",
     "integerEncode": "ConnManagementLayer.integerEncode",
@@ -252,6 +252,9 @@ HIDDEN: frozenset[str] = frozenset(
     {
         *(full for full in TOP_LEVEL.values() if full.split(".")[0] in ("Ms", "Ref", "Time", "Random")),
         "Time.token@+", "Time.token@++",
+        *(f"ConnManagementLayer.{name}" for name in (
+            "stringEncode", "stringDecode", "integerEncode", "integerDecode",
+        )),
         *(f"List.{name}" for name in (
             "mem", "remdupl", "rm", "rmall", "pos", "contains", "contains_all", "intersect", "union", "listsub", "ins",
             "ins_new", "sort", "unique_sort", "fmap", "mapfilter", "predlist",
@@ -307,6 +310,14 @@ ABSENT_VALUES: frozenset[str] = frozenset(
     | {f"Posix.FileSys.{name}" for name in ("stdin", "stdout", "stderr")}
 )  # fmt: skip
 """What else the library of SML/NJ has and pn2code has not: values, constructors, exceptions."""
+
+ABSENT_FUNCTORS: frozenset[str] = frozenset(
+    {
+        *("ArrayQSortFn", "BSearchFn", "DynamicArrayFn", "GraphSCCFn", "Hash2TableFn"),
+        *("IntervalSetFn", "KeywordFn", "MonoArrayFn"),
+    }
+)
+"""Functors that CPN Tools has and pn2code has not."""
 
 UNSUPPORTED_NAMES: frozenset[str] = frozenset({"inst", "use"})
 """Top-level names of CPN Tools that are not supported; a net may declare its own."""

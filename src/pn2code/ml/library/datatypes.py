@@ -72,6 +72,7 @@ TYPE_ARITY: dict[str, int] = {
 
 TYPE_ABBREVIATIONS: dict[str, str] = {
     "unit": "unit", "ms": "'a ms", "tms": "'a tms", "time": "time",
+    "Connection": "string", "ConnManagementLayer.Connection": "string", "CPN'Time.time": "time",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Char.char": "char", "Bool.bool": "bool",
     "LargeInt.int": "IntInf.int", "General.unit": "unit", "General.exn": "exn", "General.order": "order",
     "List.list": "'a list", "Option.option": "'a option", "ModelTime.time": "time", "Vector.vector": "'a vector",

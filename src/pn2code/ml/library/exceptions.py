@@ -40,6 +40,8 @@ _EXCEPTIONS: tuple[tuple[str, Type | None], ...] = (
     ("IOError", STRING),
     ("InternalError", STRING),
     ("InvalidDataExn", None),
+    ("DupConnNameExn", STRING),
+    ("ElementMissingExn", STRING),
 )  # fmt: skip
 
 
@@ -64,6 +66,8 @@ QUALIFIED_EXCEPTIONS: dict[str, str] = {
     "IEEEReal.Unordered": "Unordered",
     "ListPair.UnequalLengths": "UnequalLengths",
     "ConnManagementLayer.InvalidDataExn": "InvalidDataExn",
+    "ConnManagementLayer.DupConnNameExn": "DupConnNameExn",
+    "ConnManagementLayer.ElementMissingExn": "ElementMissingExn",
     "Option.Option": "Option",
     "List.Empty": "Empty",
     **{
@@ -81,7 +85,7 @@ TOP_LEVEL_EXCEPTIONS: frozenset[str] = frozenset(
         "Match", "Bind", "Div", "Overflow", "Subscript", "Empty", "Size", "Chr", "Domain", "Option", "Span", "Fail",
         "Subtract", "no_singleton", "CPN'Error", "InternalError",
         "Bernoulli", "Binomial", "Uniform", "Discrete", "Normal", "Exponential", "Poisson", "Erlang", "Chisq",
-        "Student", "Gamma", "Beta", "Weibull", "Rayleigh",
+        "Student", "Gamma", "Beta", "Weibull", "Rayleigh", "DupConnNameExn", "ElementMissingExn",
     }
 )  # fmt: skip
 """Exceptions that have a short name."""

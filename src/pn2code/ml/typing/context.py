@@ -161,12 +161,13 @@ class Context:
 
     def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
         """Says once per element that a function exists in CPN Tools but cannot run here."""
+        without = " without `--sockets`" if "`simulate --sockets`" in reason else ""
         self.warn_once(
             codes.UNSUPPORTED_BUILTIN,
             name,
             f"`{name}` is not available here: {reason}",
             span,
-            "the net is accepted, but a run stops where this is applied",
+            f"the net is accepted, but a run{without} stops where this is applied",
         )
 
     def warn_once(self, code: str, name: str, message: str, span: Span, hint: str) -> None:

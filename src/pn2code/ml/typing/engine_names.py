@@ -39,8 +39,8 @@ BindFailure BindFailureGenAll BindFatalFailure BoundGroup CPN'Cancel CPN'CancelM
 CPN'Stop CPN'app CPN'bootstrap CPN'build CPN'concat CPN'debug CPN'debug_exn CPN'dec CPN'dynArrayToList
 CPN'getMLidentifierPrefix CPN'hd CPN'idebug CPN'inc CPN'inst CPN'map CPN'nth CPN'parse_coderegion
 CPN'report_timing CPN'save_debug_info CPN'start_timing CPN'stop_timing CPN'term_debug CPN'tl
-CPN'underlineSpaces CPN'use Compile ConfidenceIntervalExn DupConnNameExn ElementMissingExn IllegalName
-IntInfToRealExn NotValidDirExn RealToIntInfExn UnsupportedArch all_expr beta_pert canreceive delay
+CPN'underlineSpaces CPN'use Compile ConfidenceIntervalExn IllegalName
+IntInfToRealExn NotValidDirExn RealToIntInfExn UnsupportedArch all_expr beta_pert delay
 dynArray gen_mkstr_ms get_ran hashId hashInt hashIntList hashString illegal_msg_ms import importE input_ms
 input_tms mkstr mkstr_tms model_time name null_str ogpath output_ms output_tms problibrandom rcsid ready reset
 rmipath sort_int_list sort_tms start_time tlegal tleq tlt tod tsub
@@ -49,7 +49,6 @@ _MEMBERS = """
 BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flushOut getBufferMode getPosOut
 BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
 BinIO.StreamIO : setBufferMode setPosOut
-ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
 LibBase : banner failure version

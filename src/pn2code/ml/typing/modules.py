@@ -18,6 +18,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import EXN, TFun
+from pn2code.ml.library.builtins import ABSENT_FUNCTORS
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing.annotations import Annotations, arity
 from pn2code.ml.typing.colset_members import members_of
@@ -174,6 +175,11 @@ class Modules:
     def _apply(self, e: s.ApplyStr, builds: list[Build]) -> Found:
         functor = self._ctx.scope.functor(e.functor)
         argument = self.structure(e.argument, builds)
+        if functor is None and e.functor in ABSENT_FUNCTORS:
+            self._ctx.error(
+                codes.UNSUPPORTED_BUILTIN, f"functor `{e.functor}` is not supported", e.span
+            )
+            return BrokenStructure()
         if functor is None:
             self._ctx.error(codes.UNBOUND, f"there is no functor `{e.functor}`", e.span)
             return BrokenStructure()

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from pn2code.base.frozen import record
+from pn2code.semantics.evaluation.connections import Connections
 from pn2code.semantics.values.data import Stream
 
 CHUNK = 4096
@@ -99,11 +100,16 @@ class Files:
     Args:
         root: the allowed folder; None: there is none.
         output: gets what is written to the standard output.
+        connections: those to other programs; None: it has none.
     """
 
     def __init__(
-        self, root: Path | None = None, output: Callable[[str], None] = lambda text: None
+        self,
+        root: Path | None = None,
+        output: Callable[[str], None] = lambda text: None,
+        connections: Connections | None = None,
     ) -> None:
+        self.connections = connections
         self.root = None if root is None else Path(os.path.realpath(root))
         self.here = self.root
         self.stdin = InStream("<stdIn>", "")

@@ -348,11 +348,19 @@ class Game:
         if t.code is None:
             return {}
         with running(t.code.origin, f"the code segment of `{t.name}`"):
-            result: Any = self.evaluator.value(t.code.action, binding)
+            result = self._acted(t.code.action, binding)
         outputs = t.code.outputs
         if len(outputs) == 1:
             return {outputs[0]: result}
         return dict(zip(outputs, result, strict=True)) if outputs else {}
+
+    def _acted(self, action: Exp, binding: Binding) -> Any:
+        """What a code segment gives; it alone may talk to other programs."""
+        connections = self.evaluator.files.connections
+        if connections is None:
+            return self.evaluator.value(action, binding)
+        with connections.in_code():
+            return self.evaluator.value(action, binding)
 
     def delay(self, t: FlatTransition, binding: Binding) -> Any:
         """The delay of the transition; it is not evaluated where no output arc leads to a timed place."""

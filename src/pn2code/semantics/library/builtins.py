@@ -24,6 +24,7 @@ from pn2code.semantics.library import (
     builtins_numbers,
     builtins_random,
     builtins_scan,
+    builtins_sockets,
     builtins_substrings,
     builtins_text,
     builtins_vectors,
@@ -180,6 +181,9 @@ def builtin(e: Evaluator, name: str) -> Value:
 def _fixed(name: str) -> Value:
     if name in CONSTANTS:
         return CONSTANTS[name]
+    if name in builtins_sockets.FUNCTIONS:
+        arity, function = builtins_sockets.FUNCTIONS[name]
+        return Native(name, arity, function)
     if reason := BUILTINS[name].unsupported:
         return Native(name, 1, _unavailable(f"`{name}` is not available here: {reason}"))
     arity, function = FUNCTIONS[name]

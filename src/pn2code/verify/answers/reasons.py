@@ -61,11 +61,17 @@ _NO_EXCEPTIONS = {
 _ILLEGAL = re.compile(r"illegal colour (.*): it is not in (the colour set `[^`]*`)", re.DOTALL)
 """The same about a value: `pn_raise_colour`, in the words of the token game."""
 
+_ABSENT = re.compile(r"(`[^`]*`) is not available here: (.*)", re.DOTALL)
+"""Of a function that is not available, with its name and the reason."""
+
 
 def _no_exception(message: str) -> str:
     illegal = _ILLEGAL.fullmatch(message)
     if illegal:
         return f"gives the illegal colour {illegal[1]}, which is not in {illegal[2]}"
+    absent = _ABSENT.fullmatch(message)
+    if absent:
+        return f"calls {absent[1]}, which is not available here ({absent[2]})"
     return _NO_EXCEPTIONS.get(message, "")
 
 

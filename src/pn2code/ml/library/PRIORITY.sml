@@ -1,0 +1,6 @@
+signature PRIORITY = sig
+    type priority
+    val compare : priority * priority -> order
+    type item
+    val priority : item -> priority
+end

@@ -1,0 +1,210 @@
+"""The connections of a net to other programs, as Comms/CPN of CPN Tools makes them: TCP, in segments.
+
+    connections = Connections(wait=10)
+    connections.open("arm", "localhost", 9000)
+    connections.send("arm", b"move")           # b"\\x04move"
+    connections.receive("arm")                 # waits at most 10 seconds
+    connections.close_all()
+
+A message is sent as segments of a byte and at most 127 bytes of data: the byte is 255 if another segment follows,
+otherwise the number of bytes. Whoever only simulates has no such object: then nothing is opened.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from pn2code.base.frozen import frozen
+from pn2code.semantics.values.data import MlUnavailable
+
+SEGMENT = 127
+"""Bytes of data in a segment."""
+LONGEST_WAIT = 86_400
+"""Most seconds that one may ask to wait."""
+MORE = 255
+"""The first byte of a segment that another one follows."""
+_SLICE = 0.1
+"""Seconds after which a wait asks whether it shall go on."""
+
+
+@frozen
+class ConnectionProblem(Exception):  # noqa: N818
+    """What CPN Tools raises as an exception.
+
+    Args:
+        exception: its name.
+        message: the text it has; None: none.
+    """
+
+    exception: str
+    message: str | None = None
+
+
+def _failed(error: OSError) -> ConnectionProblem:
+    return ConnectionProblem("SysErr", os.strerror(error.errno) if error.errno else str(error))
+
+
+def segments(data: bytes) -> bytes:
+    """A message as it is sent."""
+    parts = [data[at : at + SEGMENT] for at in range(0, len(data), SEGMENT)] or [b""]
+    heads = [MORE] * (len(parts) - 1) + [len(parts[-1])]
+    return b"".join(bytes([head]) + part for head, part in zip(heads, parts, strict=True))
+
+
+class Connections:
+    """The open ones, each with its name.
+
+    Args:
+        wait: seconds that opening, accepting, sending and receiving may take.
+        interrupted: asked while something is waited for: shall the run end?
+    """
+
+    def __init__(self, wait: float, interrupted: Callable[[], bool] = lambda: False) -> None:
+        self._wait = wait
+        self._interrupted = interrupted
+        self._open: dict[str, socket.socket] = {}
+        self._is_in_code = False
+
+    @contextmanager
+    def in_code(self) -> Iterator[None]:
+        """While a code segment runs, which is once for each occurrence; nothing else may use connections."""
+        self._is_in_code = True
+        try:
+            yield
+        finally:
+            self._is_in_code = False
+
+    # --- what a net does ---------------------------------------------------------------------------
+
+    def open(self, name: str, host: str, port: int) -> None:
+        """Connects to a server.
+
+        Raises:
+            ConnectionProblem: the name is in use, there is no such host, or nobody listens.
+        """
+        self._fresh(name)
+        try:
+            found = socket.getaddrinfo(host, port % 65536, socket.AF_INET, socket.SOCK_STREAM)
+        except (OSError, UnicodeError):
+            raise ConnectionProblem("BadAddr") from None
+        try:
+            opened = socket.create_connection((str(found[0][4][0]), port % 65536), self._wait)
+        except TimeoutError:
+            raise self._late(f"`{name}` is not connected to {host}, port {port}") from None
+        except OSError as error:
+            raise _failed(error) from None
+        self._keep(name, opened)
+
+    def accept(self, name: str, port: int) -> None:
+        """Waits for a client, of any address of this machine.
+
+        Raises:
+            ConnectionProblem: the name is in use, or the port.
+        """
+        self._fresh(name)
+        with socket.socket() as server:
+            try:
+                server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                server.bind(("", port % 65536))
+                server.listen(1)
+                self._wait_for(server, f"nobody has connected to port {port}, `{name}`,")
+                opened, _ = server.accept()
+            except OSError as error:
+                raise _failed(error) from None
+        self._keep(name, opened)
+
+    def close(self, name: str) -> None:
+        """Closes one."""
+        self.known(name, "closing connection").close()
+        del self._open[name]
+
+    def send(self, name: str, data: bytes) -> None:
+        """Sends a message."""
+        connection = self.known(name, "sending data")
+        connection.settimeout(self._wait)
+        try:
+            connection.sendall(segments(data))
+        except TimeoutError:
+            raise self._late(f"what is sent over `{name}` is not taken") from None
+        except OSError as error:
+            raise _failed(error) from None
+
+    def receive(self, name: str) -> bytes:
+        """Waits for a message."""
+        connection = self.known(name, "receiving data")
+        found = b""
+        while True:
+            (head,) = self._taken(connection, name, 1)
+            found += self._taken(connection, name, min(head, SEGMENT))
+            if head <= SEGMENT:
+                return found
+
+    def can_receive(self, name: str) -> bool:
+        """Whether something has come."""
+        return self._is_ready(self.known(name, "receiving data"), 0)
+
+    def close_all(self) -> None:
+        """At the end of the run."""
+        for connection in self._open.values():
+            connection.close()
+        self._open.clear()
+
+    # --- parts -------------------------------------------------------------------------------------
+
+    def known(self, name: str, doing: str) -> socket.socket:
+        """The connection of that name."""
+        self._asked()
+        if name not in self._open:
+            raise ConnectionProblem("ElementMissingExn", f"Failure {doing}: Connection not found.")
+        return self._open[name]
+
+    def _asked(self) -> None:
+        if not self._is_in_code:
+            raise MlUnavailable(
+                "connections are for code segments: what else a net computes is computed more than once"
+            )
+
+    def _fresh(self, name: str) -> None:
+        self._asked()
+        if name in self._open:
+            raise ConnectionProblem(
+                "DupConnNameExn", "Failure opening connection: name already in use."
+            )
+
+    def _keep(self, name: str, opened: socket.socket) -> None:
+        opened.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._open[name] = opened
+
+    def _taken(self, connection: socket.socket, name: str, size: int) -> bytes:
+        """So many bytes that have come."""
+        found = b""
+        while len(found) < size:
+            self._wait_for(connection, f"nothing has come over connection `{name}`")
+            try:
+                part = connection.recv(size - len(found))
+            except OSError as error:
+                raise _failed(error) from None
+            if not part:
+                raise ConnectionProblem("SysErr", "closed socket")
+            found += part
+        return found
+
+    def _wait_for(self, connection: socket.socket, what: str) -> None:
+        end = time.monotonic() + self._wait
+        while not self._is_ready(connection, _SLICE):
+            if self._interrupted():
+                raise MlUnavailable(f"{what} when the run was interrupted")
+            if time.monotonic() > end:
+                raise self._late(what)
+
+    @staticmethod
+    def _is_ready(connection: socket.socket, seconds: float) -> bool:
+        return bool(select.select([connection], [], [], seconds)[0])
+
+    def _late(self, what: str) -> MlUnavailable:
+        return MlUnavailable(f"{what} within {self._wait:g} s (`--sockets`)")
