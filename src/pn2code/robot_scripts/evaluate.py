@@ -23,6 +23,7 @@ from pn2code.robot_scripts.values import (
     Env,
     Primitive,
     Rec,
+    Rows,
     Scalar,
     ScalarShape,
     UnsupportedError,
@@ -34,7 +35,10 @@ from pn2code.robot_scripts.values import (
     empty_list,
     equal,
     is_enumeration,
+    item_of,
+    others_of,
     pose,
+    scalars_in,
     select,
     shape_of_type,
 )
@@ -156,8 +160,10 @@ class Evaluator:
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
             case core.Apply(core.Builtin(name), argument):
                 result = builtin(name, self.evaluate(argument, env), e.span)
-                if self.owe is not None and name in PARTIAL and isinstance(result, Scalar):
-                    self.owe(Owed(self._path, result.exp))
+                if self.owe is not None and name in PARTIAL:
+                    # Where one column has an item all have it.
+                    for scalar in scalars_in(result)[:1]:
+                        self.owe(Owed(self._path, scalar.exp))
                 return result
             case core.Apply(function, argument):
                 return self._apply(
@@ -355,19 +361,19 @@ class Evaluator:
                 if is_enumeration(type_, self.program):
                     name = Scalar(t.Value(constructor.name), tdl.Type.STRING)
                     return [equal(value, name, pattern.span)]
-                if constructor.name == "nil" and isinstance(value, Scalar):
-                    return [lists.is_empty(value.exp)]
+                if constructor.name == "nil" and isinstance(value, Scalar | Rows):
+                    return [lists.is_empty(_column(value))]
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
             case core.PCon(constructor, core.PRecord(((_, head), (_, tail)))) if (
-                constructor.name == "::" and isinstance(value, Scalar) and value.type in tdl.LISTS
+                constructor.name == "::" and _is_list(value)
             ):
-                first = Scalar(lists.first(value.exp), tdl.ELEMENT[value.type])
-                others = Scalar(lists.rest(value.exp), value.type)
-                out = [lists.has_items(value.exp)]
+                assert isinstance(value, Scalar | Rows)
+                out = [lists.has_items(_column(value))]
                 if out[0] == FALSE:
                     return out
+                first, others = item_of(value), others_of(value)
                 return [*out, *self.match(head, first, env), *self.match(tail, others, env)]
             case core.PAs(symbol, inner):
                 env[symbol.uid] = value
@@ -376,6 +382,15 @@ class Evaluator:
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
+
+
+def _is_list(value: Value) -> bool:
+    return isinstance(value, Rows) or (isinstance(value, Scalar) and value.type in tdl.LISTS)
+
+
+def _column(value: Scalar | Rows) -> t.Expression:
+    """A list, or a column of a list of records."""
+    return value.first if isinstance(value, Rows) else value.exp
 
 
 def _compares(pattern: core.Pat) -> bool:

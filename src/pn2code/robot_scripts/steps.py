@@ -45,6 +45,7 @@ from pn2code.robot_scripts.values import (
     Env,
     Fields,
     Rec,
+    Rows,
     Scalar,
     ScalarShape,
     Shape,
@@ -540,6 +541,11 @@ class StepTranslator:
                         self.datum(v, part, span)
                         for (_, v), part in zip(fields, components, strict=True)
                     )
+                )
+            case Rows(columns):
+                is_list = c is not None and c.kind is Kind.LIST
+                return t.EachDatum(
+                    self.datum(columns, c.components[0] if is_list and c else None, span)
                 )
             case Closure() | PrimitiveValue():
                 raise UnsupportedError("a function is no value of a net variable", span)
