@@ -6,7 +6,7 @@ lift p   ->  pose(p.x, p.y, p.z + 100 mm, p.rx, p.ry, p.rz)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Span
@@ -158,6 +158,8 @@ class Evaluator:
                 return Closure(rules, env)
             case core.Case(scrutinee, rules):
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
+            case core.Apply(core.Apply(core.Builtin("List.map"), function), of):
+                return self._picked(self.evaluate(function, env), self.evaluate(of, env), e.span)
             case core.Apply(core.Builtin(name), argument):
                 result = builtin(name, self.evaluate(argument, env), e.span)
                 if self.owe is not None and name in PARTIAL:
@@ -220,6 +222,26 @@ class Evaluator:
             return self.evaluate(e, env), found
         finally:
             self.owe, self._path = before
+
+    def _picked(self, function: Value, of: Value, span: Span) -> Value:
+        """`List.map function of` of a function that picks fields of records: these are lists already."""
+        if not isinstance(of, Rows):
+            raise UnsupportedError(_PICKS, span)
+        columns = {f"{i}": column for i, column in enumerate(scalars_in(of.columns))}
+        numbers = iter(columns)
+        # No name of a script is a number.
+        item = of.each(lambda s: Scalar(t.Name(next(numbers)), tdl.ELEMENT[s.type]))
+        owed: list[Owed] = []
+        before = self.perform, self.branch, self.owe
+        self.perform, self.branch, self.owe = None, None, owed.append
+        try:
+            found = self._apply(function, item, span)
+        finally:
+            self.perform, self.branch, self.owe = before
+        picked = _columns_of(found, columns)
+        if picked is None or owed or not scalars_in(picked):
+            raise UnsupportedError(_PICKS, span)
+        return Rows(picked) if isinstance(picked, Rec) else picked
 
     def _record(self, values: dict[str, Value], type_: Type, span: Span) -> Value:
         if isinstance(shape_of_type(type_, self.program), ScalarShape):
@@ -382,6 +404,25 @@ class Evaluator:
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
+
+
+_PICKS = (
+    "`List.map` of a robot script picks fields of the records of a list, and computes nothing: take the items one by "
+    "one (`item :: others`), or let the supervisor compute the list, and send it"
+)
+
+
+def _columns_of(value: Value, columns: Mapping[str, Scalar]) -> Rec | Scalar | None:
+    """Columns in place of the parts of an item; None: there is something else in the value."""
+    match value:
+        case Scalar(t.Name(name)) if name in columns:
+            return columns[name]
+        case Rec(fields):
+            parts = [(label, _columns_of(part, columns)) for label, part in fields]
+            known = tuple((label, part) for label, part in parts if part is not None)
+            return Rec(known) if len(known) == len(parts) else None
+        case _:
+            return None
 
 
 def _is_list(value: Value) -> bool:

@@ -161,3 +161,37 @@ def test_what_scripts_do_not_have(tmp_path: Path, colset: str) -> None:
     found = cell(tmp_path, page, ("x in INT",))
     assert found.ir is None
     assert f"has colour set `{colset}`, which robot scripts do not have" in found.messages[0]
+
+
+@pytest.mark.parametrize(
+    ("put", "expected"),
+    [
+        ("List.nth (List.map (fn one : DEFECT => #spot one) ds, 0)", "item_of(ds_spot, 0)"),
+        ("List.nth (List.map #spot ds, 0)", "item_of(ds_spot, 0)"),
+        (
+            "#2 (List.nth (List.map (fn {spot = p1, kind = p2} => (p2, p1)) ds, 1))",
+            "item_of(ds_spot, 1)",
+        ),
+        ("length (List.map (fn {kind = p2, ...} : DEFECT => p2) ds)", "count_of(ds_kind)"),
+    ],
+)
+def test_map_picks_fields(tmp_path: Path, put: str, expected: str) -> None:
+    page = held("ds", " guard [length ds > 1]", out=f"y : {put}")
+    found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
+    assert found.ir is not None, found.messages
+    assert f"write y {expected}" in words(found.body), found.body
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "fn one : DEFECT => #spot one + 1",
+        "fn one : DEFECT => 1",
+        "fn one : DEFECT => (1, #spot one)",
+    ],
+)
+def test_map_computes_nothing(tmp_path: Path, function: str) -> None:
+    page = held("ds", out=f"y : length (List.map ({function}) ds)")
+    found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
+    assert found.ir is None
+    assert "`List.map` of a robot script picks fields of the records" in found.messages[0]
