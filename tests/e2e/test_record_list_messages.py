@@ -71,3 +71,32 @@ def test_conform_finds_a_column_that_is_a_list_of_its_own(tmp_path: Path) -> Non
     assert "`result.robcad` holds ints, bool, int according to the script" in " ".join(
         done.output.split()
     )
+
+
+def test_a_code_segment_goes_along_a_list(tmp_path: Path) -> None:
+    """All moves of a message in one transition: the script has a loop, and does what the net says."""
+    net = record_list_cell.NET
+    begin = net.index("    trans Go code")
+    end = net.index("    trans Report", begin)
+    go = """    trans Go code input (way); action (List.app (fn (place, _) => moveJoint place) way)
+      in Working : (way, [])
+      out Working : ([], [(length way, true)])
+      in Count : k
+      out Count : k + length way
+"""
+    net = (net[:begin] + go + net[end:]).replace(", length m = i]", "]")
+    net = net.replace("in Working : ([], m)", "in Working : ([], [(i, b)])")
+    net = net.replace("out result : (rev m, k)", "out result : ([(i, b)], k)")
+    cell = record_list_cell.write(tmp_path / "cell", net)
+    d = Diagnostics()
+    made = generate(cell, d)
+    assert made is not None, [str(i) for i in d]
+    text = next(f.text for f in made.files if f.path == "robot1.tdl")
+    assert "while count_of(todo_x1) <> 0 loop" in text
+    found = conform_cell(cell, d)
+    assert found is not None and found.complete and not found.deviates, found
+    out = tmp_path / "out"
+    assert run_cell(cell, RunOptions(out=out, backend="fake"), d) is not None, [str(i) for i in d]
+    lines = [json.loads(x) for x in (out / "cell.trace.jsonl").read_text().splitlines()]
+    (end_,) = [x for x in lines if str(x.get("transition")).endswith("Supervisor.Finish")]
+    assert end_["binding"]["k"] == 3

@@ -64,6 +64,7 @@ class Evaluator:
         branch: runs two alternatives that may contain commands: (condition, then, otherwise) -> value.
         owe: hears of each computation that may fail, in the order of CPN ML, and where it is made: what becomes of its
             value, and whether anything does, is another matter (`strict`).
+        each: runs commands for each item of a list, one after the other; None where commands are not allowed.
     """
 
     program: core.Program
@@ -74,6 +75,7 @@ class Evaluator:
         Callable[[t.Expression, Callable[[], Value], Callable[[], Value], Span], Value] | None
     ) = None
     owe: Callable[[Owed], None] | None = None
+    each: Callable[[Scalar | Rows, Callable[[Value], Value]], None] | None = None
     _path: Path = ()
     _globals: dict[int, Value] = field(default_factory=dict)
     _declarations: dict[int, tuple[core.Dec, core.Symbol]] = field(default_factory=dict)
@@ -158,6 +160,8 @@ class Evaluator:
                 return Closure(rules, env)
             case core.Case(scrutinee, rules):
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
+            case core.Apply(core.Apply(core.Builtin("List.app"), function), of):
+                return self._for_each(self.evaluate(function, env), self.evaluate(of, env), e.span)
             case core.Apply(core.Apply(core.Builtin("List.map"), function), of):
                 return self._picked(self.evaluate(function, env), self.evaluate(of, env), e.span)
             case core.Apply(core.Builtin(name), argument):
@@ -223,6 +227,16 @@ class Evaluator:
         finally:
             self.owe, self._path = before
 
+    def _for_each(self, function: Value, of: Value, span: Span) -> Value:
+        """`List.app function of`: the commands of the function for each item."""
+        if not isinstance(of, Scalar | Rows) or not _is_list(of):
+            raise UnsupportedError("a list of such values cannot be used in a robot script", span)
+        if self.each is None:
+            what = "`List.app` is for commands, which are possible in code segments only"
+            raise UnsupportedError(what, span)
+        self.each(of, lambda item: self._apply(function, item, span))
+        return Rec(())
+
     def _picked(self, function: Value, of: Value, span: Span) -> Value:
         """`List.map function of` of a function that picks fields of records: these are lists already."""
         if not isinstance(of, Rows):
@@ -232,12 +246,12 @@ class Evaluator:
         # No name of a script is a number.
         item = of.each(lambda s: Scalar(t.Name(next(numbers)), tdl.ELEMENT[s.type]))
         owed: list[Owed] = []
-        before = self.perform, self.branch, self.owe
-        self.perform, self.branch, self.owe = None, None, owed.append
+        before = self.perform, self.branch, self.owe, self.each
+        self.perform, self.branch, self.owe, self.each = None, None, owed.append, None
         try:
             found = self._apply(function, item, span)
         finally:
-            self.perform, self.branch, self.owe = before
+            self.perform, self.branch, self.owe, self.each = before
         picked = _columns_of(found, columns)
         if picked is None or owed or not scalars_in(picked):
             raise UnsupportedError(_PICKS, span)

@@ -313,6 +313,23 @@ def make(shape: Shape, names: Iterator[str]) -> Value:
     return record
 
 
+def shape_of_list(value: Scalar | Rows) -> Shape:
+    """The shape of a list."""
+    if isinstance(value, Scalar):
+        return ScalarShape(value.type)
+    columns = _shape_of_columns(value.columns)
+    return RowsShape(columns)
+
+
+def _shape_of_columns(columns: Rec) -> Fields:
+    out: list[tuple[str, Shape]] = []
+    for label, part in columns.fields:
+        assert isinstance(part, Rec | Scalar), "an item has no lists"
+        own = _shape_of_columns(part) if isinstance(part, Rec) else ScalarShape(part.type)
+        out.append((label, own))
+    return Fields(tuple(out))
+
+
 def flatten(value: Value, shape: Shape, span: Span) -> list[Scalar]:
     """The scalars of a value as a shape stores them."""
     if isinstance(shape, Fields):

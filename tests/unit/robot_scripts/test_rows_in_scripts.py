@@ -195,3 +195,56 @@ def test_map_computes_nothing(tmp_path: Path, function: str) -> None:
     found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
     assert found.ir is None
     assert "`List.map` of a robot script picks fields of the records" in found.messages[0]
+
+
+APP = """
+    place Idle = 1
+    place Held : STOPS
+    trans Accept
+      in Idle
+      in x : ss
+      out Held : ss
+    trans Go code input (ss); action ({action})
+      in Held : ss
+      out Idle
+    """
+STOPS = """
+colset STOP = product POSE * INT;
+colset STOPS = list STOP;
+var ss : STOPS;
+"""
+
+
+def stops(folder: Path, action: str) -> Cell:
+    page = APP.format(action=action)
+    return Cell(folder, page, ("x in STOPS",), extra=f"{STOPS}var x : STOPS;\n")
+
+
+def test_commands_for_each_item_are_a_loop(tmp_path: Path) -> None:
+    action = "List.app (fn (place, grade) => (moveJoint place; if grade > 2 then moveHome () else ())) ss"
+    found = stops(tmp_path, f"{action}; moveHome ()")
+    assert found.messages == [] and found.ir is not None
+    assert (
+        "todo_x1 := ss_1 todo_x2 := ss_2 while count_of(todo_x1) <> 0 loop "
+        "move $joint first_of(todo_x1) if first_of(todo_x2) > 2 then move $joint home end if "
+        "todo_x1 := rest_of(todo_x1) todo_x2 := rest_of(todo_x2) end loop move $joint home mark"
+    ) in words(found.body), found.body
+
+
+def test_what_fails_in_a_loop_is_computed_there(tmp_path: Path) -> None:
+    """Before the command of its item, and again after the loop: what comes later is no reason to leave it out."""
+    action = "List.app (fn (place, grade) => if 10 div grade > 2 then moveJoint place else ()) ss"
+    last = "if 10 div length ss > 1 then moveHome () else ()"
+    found = stops(tmp_path, f"let val part = 10 div length ss in () end; {action}; {last}")
+    assert found.ir is not None, found.messages
+    body = words(found.body)
+    before, loop = body.split("todo_x1 := ss_1", 1)
+    assert before.endswith("compute 10 div count_of(ss_1) ")
+    assert "loop if 10 div first_of(todo_x2) > 2 then" in loop
+
+
+def test_commands_for_each_item_are_for_code_segments(tmp_path: Path) -> None:
+    page = held("ds", " guard [List.app (fn one : DEFECT => ()) ds = ()]", out="y : 1")
+    found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
+    assert found.ir is None
+    assert "`List.app` is for commands" in found.messages[0]
