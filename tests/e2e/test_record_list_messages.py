@@ -100,3 +100,25 @@ def test_a_code_segment_goes_along_a_list(tmp_path: Path) -> None:
     lines = [json.loads(x) for x in (out / "cell.trace.jsonl").read_text().splitlines()]
     (end_,) = [x for x in lines if str(x.get("transition")).endswith("Supervisor.Finish")]
     assert end_["binding"]["k"] == 3
+
+
+def test_lists_of_twenty(tmp_path: Path) -> None:
+    """Messages have room for them, with 143 values the largest one, and they come back as they were sent."""
+    net = record_list_cell.NET.replace("with 0..3;", "with 0..20;")
+    net = net.replace("SPOT = int with 0..9", "SPOT = int with 0..20")
+    net = net.replace("Rounds : SPOT = 1`0", "Rounds : SPOT = 1`20").replace("guard [i < 3]", "")
+    net = net.replace("1500.0 + 100.0 * Real", "1500.0 + 10.0 * Real")
+    cell = record_list_cell.write(tmp_path / "cell", net)
+    d, out = Diagnostics(), tmp_path / "out"
+    made = generate(cell, d)
+    assert made is not None, [str(i) for i in d]
+    makefile = next(f.text for f in made.files if f.path == "Makefile")
+    assert "-DPN_CHANNEL_SCALARS=143U" in makefile
+    assert run_cell(cell, RunOptions(out=out, backend="fake"), d) is not None, [str(i) for i in d]
+    lines = [json.loads(x) for x in (out / "cell.trace.jsonl").read_text().splitlines()]
+    (seen,) = [x["binding"]["ds"] for x in lines if str(x.get("transition")).endswith(".Seen")]
+    assert [x["spot"] for x in seen] == list(range(1, 21))
+    (done,) = [x["binding"] for x in lines if str(x.get("transition")).endswith(".Finish")]
+    assert done["k"] == 20
+    # The robot goes along them from the last one to the first.
+    assert done["m"] == [[i, i < 19] for i in range(20)]
