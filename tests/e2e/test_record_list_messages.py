@@ -78,11 +78,14 @@ def test_a_code_segment_goes_along_a_list(tmp_path: Path) -> None:
     net = record_list_cell.NET
     begin = net.index("    trans Go code")
     end = net.index("    trans Report", begin)
-    go = """    trans Go code input (way); action (List.app (fn (place, _) => moveJoint place) way)
+    does = (
+        "List.app (fn (place, _) => moveJoint place) way; List.foldl (fn (_, sum) => sum + 1) 0 way"
+    )
+    go = f"""    trans Go code input (way) output (n); action ({does})
       in Working : (way, [])
       out Working : ([], [(length way, true)])
       in Count : k
-      out Count : k + length way
+      out Count : k + n
 """
     net = (net[:begin] + go + net[end:]).replace(", length m = i]", "]")
     net = net.replace("in Working : ([], m)", "in Working : ([], [(i, b)])")
@@ -92,7 +95,7 @@ def test_a_code_segment_goes_along_a_list(tmp_path: Path) -> None:
     made = generate(cell, d)
     assert made is not None, [str(i) for i in d]
     text = next(f.text for f in made.files if f.path == "robot1.tdl")
-    assert "while count_of(todo_x1) <> 0 loop" in text
+    assert text.count("while count_of(todo_x1) <> 0 loop") == 1 and "so_far := so_far + 1" in text
     found = conform_cell(cell, d)
     assert found is not None and found.complete and not found.deviates, found
     out = tmp_path / "out"

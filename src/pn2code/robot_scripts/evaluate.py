@@ -65,6 +65,7 @@ class Evaluator:
         owe: hears of each computation that may fail, in the order of CPN ML, and where it is made: what becomes of its
             value, and whether anything does, is another matter (`strict`).
         each: runs commands for each item of a list, one after the other; None where commands are not allowed.
+        fold: what comes of a value and the items of a list, one after the other; likewise.
     """
 
     program: core.Program
@@ -76,6 +77,7 @@ class Evaluator:
     ) = None
     owe: Callable[[Owed], None] | None = None
     each: Callable[[Scalar | Rows, Callable[[Value], Value]], None] | None = None
+    fold: Callable[[Scalar | Rows, Value, Callable[[Value, Value], Value]], Value] | None = None
     _path: Path = ()
     _globals: dict[int, Value] = field(default_factory=dict)
     _declarations: dict[int, tuple[core.Dec, core.Symbol]] = field(default_factory=dict)
@@ -162,6 +164,18 @@ class Evaluator:
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
             case core.Apply(core.Apply(core.Builtin("List.app"), function), of):
                 return self._for_each(self.evaluate(function, env), self.evaluate(of, env), e.span)
+            case core.Apply(
+                core.Apply(
+                    core.Apply(core.Builtin("List.foldl" | "List.foldr" as name), function), start
+                ),
+                of,
+            ):
+                folding = self.evaluate(function, env)
+                begin = self.evaluate(start, env)
+                along = self.evaluate(of, env)
+                if name == "List.foldr" and _is_list(along):
+                    along = builtin("List.rev", along, e.span)
+                return self._folded(folding, begin, along, e.span)
             case core.Apply(core.Apply(core.Builtin("List.map"), function), of):
                 return self._picked(self.evaluate(function, env), self.evaluate(of, env), e.span)
             case core.Apply(core.Builtin(name), argument):
@@ -237,6 +251,20 @@ class Evaluator:
         self.each(of, lambda item: self._apply(function, item, span))
         return Rec(())
 
+    def _folded(self, function: Value, start: Value, of: Value, span: Span) -> Value:
+        """`List.foldl function start of`."""
+        if not isinstance(of, Scalar | Rows) or not _is_list(of):
+            raise UnsupportedError("a list of such values cannot be used in a robot script", span)
+        if self.fold is None:
+            raise UnsupportedError(
+                "a fold along a list is a loop, which is possible in code segments only", span
+            )
+
+        def step(item: Value, so_far: Value) -> Value:
+            return self._apply(function, Rec((("1", item), ("2", so_far))), span)
+
+        return self.fold(of, start, step)
+
     def _picked(self, function: Value, of: Value, span: Span) -> Value:
         """`List.map function of` of a function that picks fields of records: these are lists already."""
         if not isinstance(of, Rows):
@@ -246,12 +274,13 @@ class Evaluator:
         # No name of a script is a number.
         item = of.each(lambda s: Scalar(t.Name(next(numbers)), tdl.ELEMENT[s.type]))
         owed: list[Owed] = []
-        before = self.perform, self.branch, self.owe, self.each
-        self.perform, self.branch, self.owe, self.each = None, None, owed.append, None
+        before = self.perform, self.branch, self.owe, self.each, self.fold
+        self.perform = self.branch = self.each = self.fold = None
+        self.owe = owed.append
         try:
             found = self._apply(function, item, span)
         finally:
-            self.perform, self.branch, self.owe, self.each = before
+            self.perform, self.branch, self.owe, self.each, self.fold = before
         picked = _columns_of(found, columns)
         if picked is None or owed or not scalars_in(picked):
             raise UnsupportedError(_PICKS, span)

@@ -63,6 +63,7 @@ from pn2code.robot_scripts.values import (
     select,
     shape_of_colset,
     shape_of_list,
+    shape_of_value,
 )
 from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
@@ -275,6 +276,7 @@ class StepTranslator:
             branch=self._branch,
             owe=self._owe,
             each=lambda of, act: self._each(of, act, situation),
+            fold=lambda of, start, act: self._fold(of, start, act, situation, code.action.span),
         )
         result = evaluator.evaluate(code.action, situation.env)
         env = dict(situation.env)
@@ -312,11 +314,37 @@ class StepTranslator:
             self._nodes.append(Chain(((test, tuple(then)),), tuple(otherwise) or None))
         return choose(test, first, second, span)
 
+    def _fold(
+        self,
+        of: Scalar | Rows,
+        start: Value,
+        act: Callable[[Value, Value], Value],
+        situation: Situation,
+        span: Span,
+    ) -> Value:
+        """What comes of a value and the items of a list: a loop that keeps it in variables."""
+        shape = shape_of_value(start)
+        if shape is None:
+            raise UnsupportedError("such a value cannot be kept in a robot script", span)
+        element = _element(situation)
+        names = self.names.shared(of_stem("so_far", shape), shape, element, self._taken)
+        self._taken = self._taken | set(names)
+        so_far = make(shape, iter(names))
+        for name, scalar in zip(names, flatten(start, shape, span), strict=True):
+            self._nodes.append(Line(t.Assign(t.Target(name), scalar.exp)))
+
+        def one(item: Value) -> Value:
+            found = flatten(act(item, so_far), shape, span)
+            new = list(zip(names, (x.exp for x in found), strict=True))
+            self._nodes += one_after_the_other(new, self.names, situation.step)
+            return Rec(())
+
+        self._each(of, one, situation)
+        return so_far
+
     def _each(self, of: Scalar | Rows, act: Callable[[Value], Value], situation: Situation) -> None:
         """Commands for each item of a list: a loop along a copy of it."""
-        transition = situation.step.transition
-        phrase = f"transition {titled(transition)}"
-        element = Element(transition.name, "transition", transition.origin, phrase)
+        element = _element(situation)
         shape = shape_of_list(of)
         names = self.names.shared(of_stem("todo", shape), shape, element, self._taken)
         self._taken = self._taken | set(names)
@@ -635,6 +663,13 @@ class StepTranslator:
                 codes.UNSUPPORTED_TIME,
             )
         return out
+
+
+def _element(situation: Situation) -> Element:
+    """For variables of a transition's own."""
+    transition = situation.step.transition
+    phrase = f"transition {titled(transition)}"
+    return Element(transition.name, "transition", transition.origin, phrase)
 
 
 def _whole(step: Step) -> Span:

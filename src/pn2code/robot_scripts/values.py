@@ -321,6 +321,19 @@ def shape_of_list(value: Scalar | Rows) -> Shape:
     return RowsShape(columns)
 
 
+def shape_of_value(value: Value) -> Shape | None:
+    """The shape of a value, of lengths and angles that of plain numbers; None: it is a function."""
+    match value:
+        case Scalar(_, kind):
+            return ScalarShape(tdl.Type.REAL if kind in tdl.QUANTITIES else kind)
+        case Rows():
+            return shape_of_list(value)
+        case Rec(fields):
+            return _fields([(label, shape_of_value(part)) for label, part in fields])
+        case _:
+            return None
+
+
 def _shape_of_columns(columns: Rec) -> Fields:
     out: list[tuple[str, Shape]] = []
     for label, part in columns.fields:

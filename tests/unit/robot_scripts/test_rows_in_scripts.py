@@ -248,3 +248,31 @@ def test_commands_for_each_item_are_for_code_segments(tmp_path: Path) -> None:
     found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
     assert found.ir is None
     assert "`List.app` is for commands" in found.messages[0]
+
+
+def test_folds_in_code_segments_are_loops(tmp_path: Path) -> None:
+    page = """
+    place Idle = 1
+    trans Go code input (ds) output (n); action (List.foldl add 0 ds)
+      both Idle
+      in x : ds
+      out y : n
+    """
+    add = "fun add ({spot, kind} : DEFECT, sum) = if kind = burn then sum + spot else sum;\n"
+    extra = f"{EXTRA}{add}var x : DEFECTS;\n"
+    found = Cell(tmp_path, page, ("x in DEFECTS", "y out INT"), extra=extra)
+    assert found.ir is not None, found.messages
+    body = words(found.body)
+    assert (
+        "so_far := 0 todo_spot := ds_spot todo_kind := ds_kind while count_of(todo_spot) <> 0 loop "
+        'so_far := if first_of(todo_kind) = "burn" then so_far + first_of(todo_spot) else so_far '
+        "todo_spot := rest_of(todo_spot) todo_kind := rest_of(todo_kind) end loop"
+    ) in body, found.body
+    assert "write y so_far" in body
+
+
+def test_folds_elsewhere_are_not_supported(tmp_path: Path) -> None:
+    page = held("ds", out="y : List.foldl (fn ({spot = p1, ...} : DEFECT, sum) => p1 + sum) 0 ds")
+    found = cell(tmp_path, page, ("x in DEFECTS", "y out INT"))
+    assert found.ir is None
+    assert "a fold along a list is a loop" in found.messages[0]
