@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from itertools import groupby
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
@@ -18,6 +19,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.semantics.game.token_game import Game
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.pretty import held
 from pn2code.tdl.types import ELEMENT, POSE_FIELDS, Type
 
 _KINDS = {
@@ -28,8 +30,9 @@ _KINDS = {
     Type.WORD: ScalarKind.ENUM,
     Type.SIGNAL: ScalarKind.UNIT,
 }
-_Held = tuple[tuple[ScalarKind, bool], ...]
-"""Of each scalar its kind, and whether it is stored in single precision."""
+_Held = tuple[tuple[ScalarKind | None, bool], ...]
+"""Of each scalar its kind, and whether it is stored in single precision; None is behind the items of a list."""
+_END = (None, False)
 
 
 def compare(
@@ -76,26 +79,39 @@ def _differences(
         colset = partition.net.places[place].colset
         expected = tuple(_of_colset(colset, config.storage))
         if _of_file(file) != expected:
-            found = ", ".join(f"{k.type}{' single' * k.single}" for k in file.types)
-            yield f"`{file.path}` holds {found} according to the script, which is not colour set `{colset.name}`"
+            yield (
+                f"`{file.path}` holds {held(file.types)} according to the script, "
+                f"which is not colour set `{colset.name}`"
+            )
+            yield (
+                f"`{file.path}` holds {held(file.types)} according to the script, "
+                f"which is not colour set `{colset.name}`"
+            )
 
 
 def _of_file(file: t.File) -> _Held:
-    held: list[tuple[ScalarKind, bool]] = []
-    for kind in file.types:
-        one = ELEMENT.get(kind.type, kind.type)
-        if kind.type in ELEMENT:
-            held.append((ScalarKind.LIST, False))
-        if one is Type.POSE:
-            held += [(ScalarKind.REAL, kind.single)] * len(POSE_FIELDS)
-        elif one in _KINDS:
-            held.append((_KINDS[one], kind.single))
-    return tuple(held)
+    found: list[tuple[ScalarKind | None, bool]] = []
+    for row, group in groupby(file.types, lambda x: x.row):
+        if row:
+            parts = (x for kind in group for x in _of_item(ELEMENT[kind.type], kind.single))
+            found += [(ScalarKind.LIST, False), *parts, _END]
+            continue
+        for kind in group:
+            one = _of_item(ELEMENT.get(kind.type, kind.type), kind.single)
+            found += [(ScalarKind.LIST, False), *one, _END] if kind.type in ELEMENT else one
+    return tuple(found)
+
+
+def _of_item(kind: Type, single: bool) -> Iterator[tuple[ScalarKind, bool]]:
+    if kind is Type.POSE:
+        yield from [(ScalarKind.REAL, single)] * len(POSE_FIELDS)
+    elif kind in _KINDS:
+        yield _KINDS[kind], single
 
 
 def _of_colset(
     c: Colset, storage: Mapping[str, str], single: bool = False
-) -> Iterator[tuple[ScalarKind, bool]]:
+) -> Iterator[tuple[ScalarKind | None, bool]]:
     single = single or storage.get(c.name) == "float32"
     if c.kind in (Kind.ALIAS, Kind.SUBSET, Kind.PRODUCT, Kind.RECORD):
         is_same = c.kind in (Kind.ALIAS, Kind.SUBSET)
@@ -107,6 +123,7 @@ def _of_colset(
         yield ScalarKind.LIST, False
         assert c.components[0] is not None
         yield from _of_colset(c.components[0], storage)
+        yield _END
         return
     (scalar,) = scalars_of(c) or ()
     yield scalar.kind, single and scalar.kind is ScalarKind.REAL

@@ -30,7 +30,7 @@ from pn2code.robot_scripts.names import identifier
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
-from pn2code.tdl.pretty import INDENT, expression, quoted, simple, type_name
+from pn2code.tdl.pretty import INDENT, expression, held, quoted, simple, type_name
 
 WIDTH = 100
 """Comments of the header are broken at this column."""
@@ -135,9 +135,7 @@ def _files(declared: Sequence[Declared]) -> tuple[list[str], list[Element]]:
     for d in declared:
         x = d.declaration
         assert isinstance(x, t.File)
-        rows.append(
-            (x.direction.value, x.name, quoted(x.path), ":", ", ".join(map(type_name, x.types)))
-        )
+        rows.append((x.direction.value, x.name, quoted(x.path), ":", held(x.types)))
         elements.append(d.element)
     return _aligned(rows, elements), elements
 

@@ -89,7 +89,8 @@ class Data:
                     notes=[f"{self.machine.owner.phrase} uses the place"],
                     hint="use units, booleans, integers, times, reals, strings, enumerations, "
                     "records and products of these, and lists of booleans, integers, times, reals, strings, "
-                    "enumerations or poses (records of six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order)",
+                    "enumerations or poses (records of six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order), "
+                    "or of records and products of these",
                 )
                 return False
             if is_file and _has_unit(places[p].colset):

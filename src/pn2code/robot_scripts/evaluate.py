@@ -6,7 +6,7 @@ lift p   ->  pose(p.x, p.y, p.z + 100 mm, p.rx, p.ry, p.rz)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Span
@@ -23,6 +23,7 @@ from pn2code.robot_scripts.values import (
     Env,
     Primitive,
     Rec,
+    Rows,
     Scalar,
     ScalarShape,
     UnsupportedError,
@@ -34,7 +35,10 @@ from pn2code.robot_scripts.values import (
     empty_list,
     equal,
     is_enumeration,
+    item_of,
+    others_of,
     pose,
+    scalars_in,
     select,
     shape_of_type,
 )
@@ -60,6 +64,8 @@ class Evaluator:
         branch: runs two alternatives that may contain commands: (condition, then, otherwise) -> value.
         owe: hears of each computation that may fail, in the order of CPN ML, and where it is made: what becomes of its
             value, and whether anything does, is another matter (`strict`).
+        each: runs commands for each item of a list, one after the other; None where commands are not allowed.
+        fold: what comes of a value and the items of a list, one after the other; likewise.
     """
 
     program: core.Program
@@ -70,6 +76,8 @@ class Evaluator:
         Callable[[t.Expression, Callable[[], Value], Callable[[], Value], Span], Value] | None
     ) = None
     owe: Callable[[Owed], None] | None = None
+    each: Callable[[Scalar | Rows, Callable[[Value], Value]], None] | None = None
+    fold: Callable[[Scalar | Rows, Value, Callable[[Value, Value], Value]], Value] | None = None
     _path: Path = ()
     _globals: dict[int, Value] = field(default_factory=dict)
     _declarations: dict[int, tuple[core.Dec, core.Symbol]] = field(default_factory=dict)
@@ -154,10 +162,28 @@ class Evaluator:
                 return Closure(rules, env)
             case core.Case(scrutinee, rules):
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
+            case core.Apply(core.Apply(core.Builtin("List.app"), function), of):
+                return self._for_each(self.evaluate(function, env), self.evaluate(of, env), e.span)
+            case core.Apply(
+                core.Apply(
+                    core.Apply(core.Builtin("List.foldl" | "List.foldr" as name), function), start
+                ),
+                of,
+            ):
+                folding = self.evaluate(function, env)
+                begin = self.evaluate(start, env)
+                along = self.evaluate(of, env)
+                if name == "List.foldr" and _is_list(along):
+                    along = builtin("List.rev", along, e.span)
+                return self._folded(folding, begin, along, e.span)
+            case core.Apply(core.Apply(core.Builtin("List.map"), function), of):
+                return self._picked(self.evaluate(function, env), self.evaluate(of, env), e.span)
             case core.Apply(core.Builtin(name), argument):
                 result = builtin(name, self.evaluate(argument, env), e.span)
-                if self.owe is not None and name in PARTIAL and isinstance(result, Scalar):
-                    self.owe(Owed(self._path, result.exp))
+                if self.owe is not None and name in PARTIAL:
+                    # Where one column has an item all have it.
+                    for scalar in scalars_in(result)[:1]:
+                        self.owe(Owed(self._path, scalar.exp))
                 return result
             case core.Apply(function, argument):
                 return self._apply(
@@ -214,6 +240,51 @@ class Evaluator:
             return self.evaluate(e, env), found
         finally:
             self.owe, self._path = before
+
+    def _for_each(self, function: Value, of: Value, span: Span) -> Value:
+        """`List.app function of`: the commands of the function for each item."""
+        if not isinstance(of, Scalar | Rows) or not _is_list(of):
+            raise UnsupportedError("a list of such values cannot be used in a robot script", span)
+        if self.each is None:
+            what = "`List.app` is for commands, which are possible in code segments only"
+            raise UnsupportedError(what, span)
+        self.each(of, lambda item: self._apply(function, item, span))
+        return Rec(())
+
+    def _folded(self, function: Value, start: Value, of: Value, span: Span) -> Value:
+        """`List.foldl function start of`."""
+        if not isinstance(of, Scalar | Rows) or not _is_list(of):
+            raise UnsupportedError("a list of such values cannot be used in a robot script", span)
+        if self.fold is None:
+            raise UnsupportedError(
+                "a fold along a list is a loop, which is possible in code segments only", span
+            )
+
+        def step(item: Value, so_far: Value) -> Value:
+            return self._apply(function, Rec((("1", item), ("2", so_far))), span)
+
+        return self.fold(of, start, step)
+
+    def _picked(self, function: Value, of: Value, span: Span) -> Value:
+        """`List.map function of` of a function that picks fields of records: these are lists already."""
+        if not isinstance(of, Rows):
+            raise UnsupportedError(_PICKS, span)
+        columns = {f"{i}": column for i, column in enumerate(scalars_in(of.columns))}
+        numbers = iter(columns)
+        # No name of a script is a number.
+        item = of.each(lambda s: Scalar(t.Name(next(numbers)), tdl.ELEMENT[s.type]))
+        owed: list[Owed] = []
+        before = self.perform, self.branch, self.owe, self.each, self.fold
+        self.perform = self.branch = self.each = self.fold = None
+        self.owe = owed.append
+        try:
+            found = self._apply(function, item, span)
+        finally:
+            self.perform, self.branch, self.owe, self.each, self.fold = before
+        picked = _columns_of(found, columns)
+        if picked is None or owed or not scalars_in(picked):
+            raise UnsupportedError(_PICKS, span)
+        return Rows(picked) if isinstance(picked, Rec) else picked
 
     def _record(self, values: dict[str, Value], type_: Type, span: Span) -> Value:
         if isinstance(shape_of_type(type_, self.program), ScalarShape):
@@ -355,19 +426,19 @@ class Evaluator:
                 if is_enumeration(type_, self.program):
                     name = Scalar(t.Value(constructor.name), tdl.Type.STRING)
                     return [equal(value, name, pattern.span)]
-                if constructor.name == "nil" and isinstance(value, Scalar):
-                    return [lists.is_empty(value.exp)]
+                if constructor.name == "nil" and isinstance(value, Scalar | Rows):
+                    return [lists.is_empty(_column(value))]
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
             case core.PCon(constructor, core.PRecord(((_, head), (_, tail)))) if (
-                constructor.name == "::" and isinstance(value, Scalar) and value.type in tdl.LISTS
+                constructor.name == "::" and _is_list(value)
             ):
-                first = Scalar(lists.first(value.exp), tdl.ELEMENT[value.type])
-                others = Scalar(lists.rest(value.exp), value.type)
-                out = [lists.has_items(value.exp)]
+                assert isinstance(value, Scalar | Rows)
+                out = [lists.has_items(_column(value))]
                 if out[0] == FALSE:
                     return out
+                first, others = item_of(value), others_of(value)
                 return [*out, *self.match(head, first, env), *self.match(tail, others, env)]
             case core.PAs(symbol, inner):
                 env[symbol.uid] = value
@@ -376,6 +447,34 @@ class Evaluator:
                 raise UnsupportedError(
                     "this pattern cannot be used in a robot script", pattern.span
                 )
+
+
+_PICKS = (
+    "`List.map` of a robot script picks fields of the records of a list, and computes nothing: take the items one by "
+    "one (`item :: others`), or let the supervisor compute the list, and send it"
+)
+
+
+def _columns_of(value: Value, columns: Mapping[str, Scalar]) -> Rec | Scalar | None:
+    """Columns in place of the parts of an item; None: there is something else in the value."""
+    match value:
+        case Scalar(t.Name(name)) if name in columns:
+            return columns[name]
+        case Rec(fields):
+            parts = [(label, _columns_of(part, columns)) for label, part in fields]
+            known = tuple((label, part) for label, part in parts if part is not None)
+            return Rec(known) if len(known) == len(parts) else None
+        case _:
+            return None
+
+
+def _is_list(value: Value) -> bool:
+    return isinstance(value, Rows) or (isinstance(value, Scalar) and value.type in tdl.LISTS)
+
+
+def _column(value: Scalar | Rows) -> t.Expression:
+    """A list, or a column of a list of records."""
+    return value.first if isinstance(value, Rows) else value.exp
 
 
 def _compares(pattern: core.Pat) -> bool:

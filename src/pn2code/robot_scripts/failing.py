@@ -17,7 +17,7 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.guards import Constant, fact, ways
 from pn2code.robot_scripts.not_a_number import MayBeNan
-from pn2code.robot_scripts.values import Env, Scalar
+from pn2code.robot_scripts.values import Env, Rows, Scalar, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import children
 from pn2code.tdl.pretty import expression
@@ -90,11 +90,13 @@ class Known:
                 high = c.high if isinstance(c.high, int) else MAX_INT
                 subject = expression(value.exp)
                 ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
-            if v.uid in of and c is not None and c.kind is Kind.LIST and isinstance(value, Scalar):
+            is_list = c is not None and c.kind is Kind.LIST
+            if v.uid in of and c is not None and is_list and isinstance(value, Scalar | Rows):
                 low = c.low if isinstance(c.low, int) else 0
                 high = c.high if isinstance(c.high, int) else MAX_INT
-                subject = expression(lists.count(value.exp))
-                ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
+                for column in scalars_in(value):
+                    subject = expression(lists.count(column.exp))
+                    ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
         return Known(self.constants, self.may_be_nan, ranges)
 
     def range_of(self, e: t.Expression) -> Range:

@@ -19,7 +19,18 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import Known
-from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, builtin, select
+from pn2code.robot_scripts.values import (
+    Rec,
+    Rows,
+    Scalar,
+    UnsupportedError,
+    Value,
+    builtin,
+    item_of,
+    others_of,
+    scalars_in,
+    select,
+)
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
@@ -135,33 +146,36 @@ def _of_items(
     None: some of its other items are not known, or its items cannot be asked one by one.
     """
     element = c.components[0].resolved if c.kind is Kind.LIST and c.components[0] else None
-    kind = None if element is None else _ASKED.get(element.kind)
-    if element is None or kind is None or e is None:
+    if element is None or e is None or not has_bounds(element):
         return None
-    if not has_bounds(element) or not isinstance(value, Scalar):
+    if not isinstance(value, Rows) and element.kind not in _ASKED:
         return None
-    found: t.Expression = value.exp
+    assert isinstance(value, Scalar | Rows), "it is a list"
+    found = value
     left: core.Exp | None = e
     asked: list[t.Expression] = []
     written = 0
     while isinstance(left, core.Apply | core.ListExp):
         if isinstance(left, core.ListExp):
-            items = lists.items_of(found)
-            if items is None or len(items) != len(left.items):
+            if any(lists.items_of(x.exp) is None for x in scalars_in(found)):
                 return None
-            pairs = list(zip(items, left.items, strict=True))
+            pairs = []
+            for item in left.items:
+                pairs.append((item_of(found), item))
+                found = others_of(found)
             left = None
         else:
             cons = _cons(left)
             if cons is None:
                 break
             item, left = cons
-            pairs = [(lists.first(found), item)]
-            found = lists.rest(found)
+            pairs = [(item_of(found), item)]
+            found = others_of(found)
         for one, of in pairs:
             source = _source(of, taken)
             if source is None or source.resolved != element:
-                asked += _unless_known(element, Scalar(one, kind), source, known, of.span)
+                for part, inner, given in _components(element, one, of, of.span):
+                    asked += _of_part(part, inner, given, taken, known, of.span)
         written += len(pairs)
     if left is None:
         length: Colset | None = replace(c, name="", low=written, high=written)
@@ -176,7 +190,7 @@ def _of_items(
     return [*asked, *_unless_known(c, value, length, known, e.span)]
 
 
-_ASKED = {Kind.INT: tdl.Type.INT, Kind.REAL: tdl.Type.REAL, Kind.STRING: tdl.Type.STRING}
+_ASKED = frozenset({Kind.INT, Kind.REAL, Kind.STRING})
 """Items of lists that have bounds, and can be asked."""
 
 
@@ -277,7 +291,7 @@ def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[
         for label, part in parts_of(c).items():
             yield from _of(part, select(value, label, span), inner.get(label), span)
         return
-    if c.kind is Kind.LIST and isinstance(value, Scalar):
+    if c.kind is Kind.LIST and isinstance(value, Scalar | Rows):
         yield from _of_length(c, value, source, span)
         return
     if c.kind not in (Kind.INT, Kind.REAL) or not isinstance(value, Scalar):
@@ -291,18 +305,19 @@ def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[
 
 
 def _of_length(
-    c: Colset, value: Scalar, source: Colset | None, span: Span
+    c: Colset, value: Scalar | Rows, source: Colset | None, span: Span
 ) -> Iterator[t.Expression]:
     """What has to be so of a list: how long it is. What its items are has to be known."""
     element = c.components[0]
     own = source if source is not None and source.kind is Kind.LIST else None
     assert element is not None
-    items = lists.items_of(value.exp)
+    column = value.first if isinstance(value, Rows) else value.exp
+    items = lists.items_of(column)
     if has_bounds(element) and items != ():
         inner = None if own is None else own.components[0]
         if inner is None or inner.resolved != element.resolved:
             raise _UnaskableError(c)
-    count = Scalar(lists.count(value.exp), tdl.Type.INT)
+    count = Scalar(lists.count(column), tdl.Type.INT)
     if isinstance(c.low, int) and not (own and isinstance(own.low, int) and own.low >= c.low):
         yield from _if_open("Int.>=", count, c.low, span)
     if isinstance(c.high, int) and not (own and isinstance(own.high, int) and own.high <= c.high):

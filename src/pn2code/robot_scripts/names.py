@@ -6,7 +6,7 @@ every transition takes them with; a message is read into the net variable of its
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import record
@@ -15,7 +15,14 @@ from pn2code.cell.scalars import ScalarKind
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.robot_scripts.ir import Declared, Element
-from pn2code.robot_scripts.values import Fields, Scalar, ScalarShape, Shape, scalar_shapes
+from pn2code.robot_scripts.values import (
+    Fields,
+    RowsShape,
+    Scalar,
+    ScalarShape,
+    Shape,
+    scalar_shapes,
+)
 from pn2code.tdl import tree as t
 from pn2code.tdl.expressions import RESERVED
 from pn2code.tdl.grammar import KEYWORDS
@@ -67,6 +74,15 @@ def _in_file(of: Type, kind: ScalarKind) -> Type:
     return Type.WORDS if of is Type.STRINGS else Type.WORD
 
 
+def _parts(shape: Shape) -> Iterator[ScalarShape | RowsShape]:
+    """What a file holds, in order: scalars, and lists of records."""
+    if isinstance(shape, Fields):
+        for _, inner in shape.fields:
+            yield from _parts(inner)
+    else:
+        yield shape
+
+
 @record
 class _Variable:
     type: t.TypeName
@@ -108,10 +124,19 @@ class Names:
         name = self.unique(identifier(stem))
         types: tuple[t.TypeName, ...] = ()
         rest = list(scalars)
-        for _, scalar in scalar_shapes(shape):
-            kind = (rest[0].elements or rest)[0].kind
-            types += (t.TypeName(_in_file(scalar.type, kind), scalar.single),)
-            del rest[: len(POSE_FIELDS) if scalar.type is Type.POSE else 1]
+        row = 0
+        for part in _parts(shape):
+            if isinstance(part, ScalarShape):
+                kind = (rest[0].elements or rest)[0].kind
+                types += (t.TypeName(_in_file(part.type, kind), part.single),)
+                del rest[: len(POSE_FIELDS) if part.type is Type.POSE else 1]
+                continue
+            row += 1
+            items = list(rest.pop(0).elements)
+            for _, column in scalar_shapes(part):
+                of = _in_file(column.type, items[0].kind)
+                types += (t.TypeName(of, column.single, row),)
+                del items[: len(POSE_FIELDS) if column.type is Type.POSES else 1]
         if not types:
             types = (t.TypeName(Type.SIGNAL),)
         self.files[name] = Declared(t.File(direction, name, path, types), element)

@@ -10,7 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pn2code.robot_scripts.names import Names
-from pn2code.robot_scripts.values import Fields, Rec, Scalar, ScalarShape, Shape, Value
+from pn2code.robot_scripts.values import (
+    Fields,
+    Rec,
+    Rows,
+    RowsShape,
+    Scalar,
+    ScalarShape,
+    Shape,
+    Value,
+)
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, single
 from pn2code.tdl.expressions import MAKES
@@ -26,6 +35,8 @@ def rounded(value: Value, shape: Shape, names: Names) -> Iterator[t.Expression]:
                 part = next((v for name, v in fields if name == label), None)
                 if part is not None:
                     yield from rounded(part, inner, names)
+        case Rows(columns), RowsShape(kept):
+            yield from rounded(columns, kept, names)
 
 
 def _is_rounded(e: t.Expression, names: Names) -> bool:

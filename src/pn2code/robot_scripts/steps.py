@@ -26,15 +26,15 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import membership, moves, unread
+from pn2code.robot_scripts import lists, membership, moves, unread
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.illegal_tokens import stops
-from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node, titled
+from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node, Repeat, titled
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
-from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.names import Names, identifier, of_stem
 from pn2code.robot_scripts.not_a_number import may_be_nan
 from pn2code.robot_scripts.rounding import rounded
 from pn2code.robot_scripts.situation import Situation
@@ -45,6 +45,7 @@ from pn2code.robot_scripts.values import (
     Env,
     Fields,
     Rec,
+    Rows,
     Scalar,
     ScalarShape,
     Shape,
@@ -55,9 +56,14 @@ from pn2code.robot_scripts.values import (
     choose,
     equal,
     flatten,
+    item_of,
+    make,
+    others_of,
     scalars_in,
     select,
     shape_of_colset,
+    shape_of_list,
+    shape_of_value,
 )
 from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
@@ -269,6 +275,8 @@ class StepTranslator:
             ),
             branch=self._branch,
             owe=self._owe,
+            each=lambda of, act: self._each(of, act, situation),
+            fold=lambda of, start, act: self._fold(of, start, act, situation, code.action.span),
         )
         result = evaluator.evaluate(code.action, situation.env)
         env = dict(situation.env)
@@ -305,6 +313,53 @@ class StepTranslator:
         if then or otherwise:
             self._nodes.append(Chain(((test, tuple(then)),), tuple(otherwise) or None))
         return choose(test, first, second, span)
+
+    def _fold(
+        self,
+        of: Scalar | Rows,
+        start: Value,
+        act: Callable[[Value, Value], Value],
+        situation: Situation,
+        span: Span,
+    ) -> Value:
+        """What comes of a value and the items of a list: a loop that keeps it in variables."""
+        shape = shape_of_value(start)
+        if shape is None:
+            raise UnsupportedError("such a value cannot be kept in a robot script", span)
+        element = _element(situation)
+        names = self.names.shared(of_stem("so_far", shape), shape, element, self._taken)
+        self._taken = self._taken | set(names)
+        so_far = make(shape, iter(names))
+        for name, scalar in zip(names, flatten(start, shape, span), strict=True):
+            self._nodes.append(Line(t.Assign(t.Target(name), scalar.exp)))
+
+        def one(item: Value) -> Value:
+            found = flatten(act(item, so_far), shape, span)
+            new = list(zip(names, (x.exp for x in found), strict=True))
+            self._nodes += one_after_the_other(new, self.names, situation.step)
+            return Rec(())
+
+        self._each(of, one, situation)
+        return so_far
+
+    def _each(self, of: Scalar | Rows, act: Callable[[Value], Value], situation: Situation) -> None:
+        """Commands for each item of a list: a loop along a copy of it."""
+        element = _element(situation)
+        shape = shape_of_list(of)
+        names = self.names.shared(of_stem("todo", shape), shape, element, self._taken)
+        self._taken = self._taken | set(names)
+        todo = make(shape, iter(names))
+        assert isinstance(todo, Scalar | Rows)
+        for name, scalar in zip(names, scalars_in(of), strict=True):
+            self._nodes.append(Line(t.Assign(t.Target(name), scalar.exp)))
+        before, there, body = self._nodes, self._there, list[Node]()
+        test = lists.has_items(scalars_in(todo)[0].exp)
+        self._nodes, self._there = body, there.with_condition(test)
+        act(item_of(todo))
+        self._nodes, self._there = before, there
+        for name, scalar in zip(names, scalars_in(others_of(todo)), strict=True):
+            body.append(Line(t.Assign(t.Target(name), scalar.exp)))
+        self._nodes.append(Repeat(test, tuple(body)))
 
     def _perform(self, name: str, argument: Value, span: Span, output: str, s: Situation) -> Value:
         primitive = self.primitives[name]
@@ -541,6 +596,11 @@ class StepTranslator:
                         for (_, v), part in zip(fields, components, strict=True)
                     )
                 )
+            case Rows(columns):
+                is_list = c is not None and c.kind is Kind.LIST
+                return t.EachDatum(
+                    self.datum(columns, c.components[0] if is_list and c else None, span)
+                )
             case Closure() | PrimitiveValue():
                 raise UnsupportedError("a function is no value of a net variable", span)
 
@@ -603,6 +663,13 @@ class StepTranslator:
                 codes.UNSUPPORTED_TIME,
             )
         return out
+
+
+def _element(situation: Situation) -> Element:
+    """For variables of a transition's own."""
+    transition = situation.step.transition
+    phrase = f"transition {titled(transition)}"
+    return Element(transition.name, "transition", transition.origin, phrase)
 
 
 def _whole(step: Step) -> Span:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.failing import Known
-from pn2code.robot_scripts.ir import Chain, Line, Node
+from pn2code.robot_scripts.ir import Chain, Line, Node, Repeat
 from pn2code.robot_scripts.values import conjunction, disjunction, logical_not
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import children, expressions_of
@@ -145,6 +145,9 @@ def _backward(nodes: Sequence[Node], later: Done, path: Path) -> tuple[list[Node
                     later._paths.setdefault(e, []).extend(paths)
                 later.add(test, path)
                 node = Chain(((test, tuple(yes)),), tuple(no) or None)
+            case Repeat(condition, body):
+                node = Repeat(condition, tuple(_backward(body, Done(), ())[0]))
+                later = _of([] if condition is None else [condition], path)
             case _:
                 pass
         out.append(node)
@@ -187,6 +190,8 @@ def _forward(nodes: Sequence[Node], done: Done, path: Path) -> list[Node]:
                 if not yes and not no:
                     continue
                 node = Chain(((test, tuple(yes)),), tuple(no) or None)
+            case Repeat(condition, body):
+                node = Repeat(condition, tuple(_forward(body, Done(), ())))
             case _:
                 pass
         out.append(node)
@@ -202,6 +207,8 @@ def _merged(nodes: Iterable[Node]) -> list[Node]:
                 node = Chain(
                     ((test, tuple(_merged(then))),), tuple(_merged(otherwise or ())) or None
                 )
+            case Repeat(condition, body):
+                node = Repeat(condition, tuple(_merged(body)))
             case Line(t.Compute(values)):
                 if (
                     out

@@ -9,7 +9,7 @@ field of a pose); where it meets another number the units are brought together.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
@@ -63,7 +63,14 @@ class Fields:
     fields: tuple[tuple[str, Shape], ...]
 
 
-Shape = ScalarShape | Fields
+@frozen
+class RowsShape:
+    """A list of records or products: a list for each scalar of these, its columns."""
+
+    columns: Fields
+
+
+Shape = ScalarShape | Fields | RowsShape
 
 
 def is_pose(labels: tuple[str, ...], types: tuple[Type, ...]) -> bool:
@@ -103,10 +110,24 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
 
 
 def _list_of(element: Shape | None) -> Shape | None:
-    """The shape of a list: of numbers, truth values, texts or poses."""
+    """The shape of a list: of numbers, truth values, texts or poses, or of records of these."""
+    if isinstance(element, Fields):
+        columns = _columns(element)
+        return None if columns is None or not scalar_shapes(columns) else RowsShape(columns)
     if not isinstance(element, ScalarShape) or element.type not in tdl.LIST_OF:
         return None
     return ScalarShape(tdl.LIST_OF[element.type], element.single)
+
+
+def _columns(item: Fields) -> Fields | None:
+    """A list for each scalar of an item; None where items have lists, or poses that traces write otherwise."""
+    out: list[tuple[str, Shape]] = []
+    for label, part in item.fields:
+        found = _columns(part) if isinstance(part, Fields) else _list_of(part)
+        if found is None or isinstance(found, RowsShape):
+            return None
+        out.append((label, found))
+    return Fields(tuple(out))
 
 
 def _fields(inner: list[tuple[str, Shape | None]]) -> Fields | None:
@@ -169,13 +190,28 @@ def shape_of_colset(
             return ScalarShape(tdl.Type.POSE, only.single)
         return _fields(inner)
     if c.kind is Kind.LIST and c.components[0] is not None:
-        one = c.components[0].whole
-        if one.labels and tuple(one.labels) != POSE_LABELS:
+        if any(map(_is_strange_pose, _records_in(c.components[0]))):
             return None  # traces write the items as the script has them
         return _list_of(shape_of_colset(c.components[0], program, storage, in_order=True))
     if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.TIME, Kind.STRING, Kind.ENUM):
         return shape_of_type(c.type, program)
     return None
+
+
+def _records_in(c: Colset) -> Iterator[Colset]:
+    """The records that a colour set is made of, itself included."""
+    whole = c.whole
+    if whole.labels:
+        yield whole
+    for part in whole.components:
+        if part is not None:
+            yield from _records_in(part)
+
+
+def _is_strange_pose(c: Colset) -> bool:
+    """Whether records are poses, but with their fields in another order or in upper case."""
+    types = tuple(x.type for x in c.components if x is not None)
+    return is_pose(tuple(c.labels), types) and tuple(c.labels) != POSE_LABELS
 
 
 # --- values ------------------------------------------------------------------------------------
@@ -201,6 +237,30 @@ class Rec:
 
 
 @frozen
+class Rows:
+    """A list of records: a record of lists, its columns, all of one length."""
+
+    columns: Rec
+
+    @property
+    def first(self) -> t.Expression:
+        """A column, for what is the same of all of them."""
+        return scalars_in(self.columns)[0].exp
+
+    def each(self, change: Callable[[Scalar], Scalar]) -> Rec:
+        """The columns, changed alike."""
+        return _each(self.columns, change)
+
+
+def _each(columns: Rec, change: Callable[[Scalar], Scalar]) -> Rec:
+    out: list[tuple[str, Value]] = []
+    for label, part in columns.fields:
+        assert isinstance(part, Rec | Scalar), "an item has no lists"
+        out.append((label, _each(part, change) if isinstance(part, Rec) else change(part)))
+    return Rec(tuple(out))
+
+
+@frozen
 class Closure:
     """A function of the net with what its free variables mean."""
 
@@ -216,7 +276,7 @@ class Primitive:
     name: str
 
 
-Value = Scalar | Rec | Closure | Primitive
+Value = Scalar | Rec | Rows | Closure | Primitive
 Env = dict[int, "Value"]
 """Meaning of symbols by uid."""
 
@@ -231,6 +291,8 @@ def scalars_in(value: Value) -> list[Scalar]:
             return [value]
         case Rec(fields):
             return [scalar for _, v in fields for scalar in scalars_in(v)]
+        case Rows(columns):
+            return scalars_in(columns)
         case _:
             return []
 
@@ -239,12 +301,46 @@ def make(shape: Shape, names: Iterator[str]) -> Value:
     """A value held by script variables, one name for each scalar in order."""
     if isinstance(shape, ScalarShape):
         return Scalar(t.Name(next(names)), shape.type)
+    if isinstance(shape, RowsShape):
+        columns = make(shape.columns, names)
+        assert isinstance(columns, Rec)
+        return Rows(columns)
     record = Rec(tuple((label, make(inner, names)) for label, inner in shape.fields))
     if {label.lower() for label, _ in record.fields} == set(POSE_LABELS) and all(
         isinstance(v, Scalar) and v.type is tdl.Type.REAL for _, v in record.fields
     ):
         return pose(dict(record.fields), t.GENERATED)
     return record
+
+
+def shape_of_list(value: Scalar | Rows) -> Shape:
+    """The shape of a list."""
+    if isinstance(value, Scalar):
+        return ScalarShape(value.type)
+    columns = _shape_of_columns(value.columns)
+    return RowsShape(columns)
+
+
+def shape_of_value(value: Value) -> Shape | None:
+    """The shape of a value, of lengths and angles that of plain numbers; None: it is a function."""
+    match value:
+        case Scalar(_, kind):
+            return ScalarShape(tdl.Type.REAL if kind in tdl.QUANTITIES else kind)
+        case Rows():
+            return shape_of_list(value)
+        case Rec(fields):
+            return _fields([(label, shape_of_value(part)) for label, part in fields])
+        case _:
+            return None
+
+
+def _shape_of_columns(columns: Rec) -> Fields:
+    out: list[tuple[str, Shape]] = []
+    for label, part in columns.fields:
+        assert isinstance(part, Rec | Scalar), "an item has no lists"
+        own = _shape_of_columns(part) if isinstance(part, Rec) else ScalarShape(part.type)
+        out.append((label, own))
+    return Fields(tuple(out))
 
 
 def flatten(value: Value, shape: Shape, span: Span) -> list[Scalar]:
@@ -255,7 +351,9 @@ def flatten(value: Value, shape: Shape, span: Span) -> list[Scalar]:
             for label, inner in shape.fields
             for x in flatten(select(value, label, span), inner, span)
         ]
-    if not isinstance(value, Scalar):
+    if isinstance(shape, RowsShape) and isinstance(value, Rows):
+        return flatten(value.columns, shape.columns, span)
+    if not isinstance(value, Scalar) or isinstance(shape, RowsShape):
         raise UnsupportedError("this value cannot be stored in a robot script", span)
     return [as_real(value) if shape.type is tdl.Type.REAL else value]
 
@@ -264,6 +362,8 @@ def scalar_shapes(shape: Shape, label: str = "") -> list[tuple[str, ScalarShape]
     """The scalars of a shape with their labels joined by `_`."""
     if isinstance(shape, ScalarShape):
         return [(label, shape)]
+    if isinstance(shape, RowsShape):
+        return scalar_shapes(shape.columns, label)
     return [
         x
         for name, inner in shape.fields
@@ -318,6 +418,10 @@ def choose(condition: t.Expression, a: Value, b: Value, span: Span) -> Value:
         return Rec(
             tuple((label, choose(condition, v, b.get(label), span)) for label, v in a.fields)
         )
+    if isinstance(a, Rows) and isinstance(b, Rows):
+        chosen = choose(condition, a.columns, b.columns, span)
+        assert isinstance(chosen, Rec)
+        return Rows(chosen)
     raise UnsupportedError("a function cannot be chosen by a condition", span)
 
 
@@ -427,6 +531,10 @@ def equal(a: Value, b: Value, span: Span) -> t.Expression:
         return t.Binary("or", same, t.Unary("not", t.Binary("or", *own)))
     if isinstance(a, Rec) and isinstance(b, Rec):
         return conjunction([equal(v, b.get(label), span) for label, v in a.fields])
+    if isinstance(a, Rows) and isinstance(b, Rows):
+        if () in (lists.items_of(a.first), lists.items_of(b.first)):
+            return lists.is_empty(b.first if lists.items_of(a.first) == () else a.first)
+        return equal(a.columns, b.columns, span)
     raise UnsupportedError("functions cannot be compared", span)
 
 
@@ -463,6 +571,8 @@ def builtin(name: str, argument: Value, span: Span) -> Value:
         if isinstance(same, t.Binary) and same.operator == "=":
             return Scalar(t.Binary("<>", same.left, same.right), _BOOL)
         return Scalar(logical_not(same), _BOOL)
+    if name in lists.FUNCTIONS and isinstance(operands[0], Rows):
+        return _on_rows(name, operands[0], operands[1:])
     scalars = [x for x in operands if isinstance(x, Scalar)]
     if len(scalars) != len(operands):
         raise UnsupportedError(f"`{name}` cannot be used in a robot script", span)
@@ -503,28 +613,88 @@ def _on_list(name: str, s: list[Scalar]) -> Scalar:
             return Scalar(t.CallExpression("joined", (of.exp, s[1].exp)), of.type)
 
 
-def cons(item: Value, of: Value, span: Span) -> Scalar:
+def _on_rows(name: str, of: Rows, more: Sequence[Value]) -> Value:
+    """A function on a list of records: what it does to each column."""
+    match name:
+        case "List.length":
+            return Scalar(lists.count(of.first), _INT)
+        case "List.null":
+            return Scalar(lists.is_empty(of.first), _BOOL)
+        case "List.hd":
+            return item_of(of)
+        case "List.@":
+            (other,) = more
+            assert isinstance(other, Rows)
+            behind = iter(scalars_in(other))
+            return Rows(of.each(lambda s: _on_list(name, [s, next(behind)])))
+        case _:
+            own = [x for x in more if isinstance(x, Scalar)]
+            changed = of.each(lambda s: _on_list(name, [s, *own]))
+            return changed if name == "List.nth" else Rows(changed)
+
+
+def item_of(of: Scalar | Rows) -> Value:
+    """The first item of a list."""
+    if isinstance(of, Rows):
+        return of.each(lambda s: Scalar(lists.first(s.exp), tdl.ELEMENT[s.type]))
+    return Scalar(lists.first(of.exp), tdl.ELEMENT[of.type])
+
+
+def others_of(of: Scalar | Rows) -> Scalar | Rows:
+    """All items of a list but the first."""
+    if isinstance(of, Rows):
+        return Rows(of.each(lambda s: Scalar(lists.rest(s.exp), s.type)))
+    return Scalar(lists.rest(of.exp), of.type)
+
+
+def cons(item: Value, of: Value, span: Span) -> Scalar | Rows:
     """`item :: of`.
 
     Raises:
         UnsupportedError: scripts have no such list.
     """
+    if isinstance(of, Rows) and isinstance(item, Rec):
+        return Rows(_cons_columns(item, of.columns, span))
     if not isinstance(item, Scalar) or not isinstance(of, Scalar) or of.type not in tdl.LISTS:
         raise UnsupportedError("a list of such values cannot be used in a robot script", span)
     plain = as_real(item) if of.type is tdl.Type.REALS else item
     return Scalar(lists.with_first(plain.exp, of.exp), of.type)
 
 
-def empty_list(ml: Type, program: core.Program, span: Span) -> Scalar:
+def _cons_columns(item: Rec, columns: Rec, span: Span) -> Rec:
+    out: list[tuple[str, Value]] = []
+    for label, column in columns.fields:
+        part = item.get(label)
+        if isinstance(column, Rec) and isinstance(part, Rec):
+            out.append((label, _cons_columns(part, column, span)))
+        else:
+            out.append((label, cons(part, column, span)))
+    return Rec(tuple(out))
+
+
+def empty_list(ml: Type, program: core.Program, span: Span) -> Scalar | Rows:
     """`[]` of a type.
 
     Raises:
         UnsupportedError: scripts have no such list.
     """
     shape = shape_of_type(ml, program)
+    if isinstance(shape, RowsShape):
+        return Rows(_empty_columns(shape.columns))
     if not isinstance(shape, ScalarShape) or shape.type not in tdl.LISTS:
         raise UnsupportedError(f"values of type `{ml}` cannot be used in a robot script", span)
     return Scalar(lists.made((), shape.type), shape.type)
+
+
+def _empty_columns(columns: Fields) -> Rec:
+    out: list[tuple[str, Value]] = []
+    for label, column in columns.fields:
+        if isinstance(column, Fields):
+            out.append((label, _empty_columns(column)))
+        else:
+            assert isinstance(column, ScalarShape)
+            out.append((label, Scalar(lists.made((), column.type), column.type)))
+    return Rec(tuple(out))
 
 
 def _real(name: str, s: list[Scalar], span: Span) -> Scalar:

@@ -10,9 +10,10 @@ saying why in its status file (I9, I10). The invariants are those of docs/protoc
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from itertools import groupby
 from pathlib import PurePath
 from typing import NoReturn, Protocol
 
@@ -101,7 +102,7 @@ def script_specs(program: CheckedProgram, robot: str) -> tuple[ChannelSpec, ...]
             ChannelSpec(
                 name=PurePath(file.path).stem,
                 file=file.path,
-                scalars=tuple(s for kind in file.types for s in _scalars(kind.type)),
+                scalars=tuple(_held(file.types)),
                 writer=robot if out else "supervisor",
                 reader="supervisor" if out else robot,
                 kind=ChannelKind.FLAG if out else ChannelKind.DATA,
@@ -109,6 +110,15 @@ def script_specs(program: CheckedProgram, robot: str) -> tuple[ChannelSpec, ...]
             )
         )
     return tuple(specs)
+
+
+def _held(types: Iterable[t.TypeName]) -> Iterator[Scalar]:
+    for row, group in groupby(types, lambda x: x.row):
+        found = [s for kind in group for s in _scalars(kind.type)]
+        if not row:
+            yield from found
+            continue
+        yield replace(found[0], elements=tuple(x for s in found for x in s.elements))
 
 
 def _scalars(kind: Type) -> tuple[Scalar, ...]:

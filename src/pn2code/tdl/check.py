@@ -18,7 +18,7 @@ from pn2code.tdl import codes, flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.expressions import RESERVED, Scope, type_of
-from pn2code.tdl.types import IN_SCRIPT, NUMBERS, QUANTITIES, Type, fits
+from pn2code.tdl.types import IN_SCRIPT, LISTS, NUMBERS, QUANTITIES, Type, fits
 
 AXES = (4, 6, 7)
 """How many axes an arm may have."""
@@ -307,10 +307,28 @@ class _Checker:
             case t.TupleDatum(items):
                 for i in items:
                     self.datum(i)
+            case t.EachDatum(item):
+                self.each(item)
             case t.NullDatum():
                 pass
             case _:
                 type_of(datum, self.scope)
+
+    def each(self, item: t.Datum) -> None:
+        """A list of records: it is made of columns."""
+        self.datum(item)
+        before = len(self.d.errors)
+        columns = tuple(paths.data(item))
+        for column in columns:
+            found = type_of(column, self.scope)
+            if len(self.d.errors) == before and found is not None and found not in LISTS:
+                self.d.error(
+                    codes.TYPE,
+                    f"`each` makes records of the items of lists, but this is `{found}`",
+                    column.span,
+                )
+        if not columns:
+            self.d.error(codes.TYPE, "`each` has no list", item.span)
 
     # files
 

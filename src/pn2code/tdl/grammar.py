@@ -13,7 +13,7 @@ KEYWORDS: Final = (
     "wait", "until", "read", "into", "clear", "write", "signal",
     "compute", "tool", "takes", "releases", "creates", "removes",
     "couples", "uncouples", "for",
-    "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
+    "measure", "sense", "mark", "with", "each", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
 )  # fmt: skip
@@ -23,7 +23,9 @@ GRAMMAR: Final = (
 start: "program" NAME declaration* procedure* "begin" block "end" "program"
 
 ?declaration: file | const | var
-file: (INPUT | OUTPUT) NAME STRING ":" type ("," type)*
+file: (INPUT | OUTPUT) NAME STRING ":" _held ("," _held)*
+_held: type | rows
+rows: NAME "(" type ("," type)* ")"
 const: "const" NAME "=" expression
 var: "var" NAME ("," NAME)* ":" type (":=" expression)?
 type: (NAME | SPEED | SIGNAL) SINGLE?
@@ -58,7 +60,8 @@ measure: "measure" expression "into" NAME
 sense: "sense" (NAME | STRING) "into" NAME
 mark: "mark" (NAME ("." NAME)* | STRING) ("with" binding ("," binding)*)?
 binding: (NAME | STRING) "=" datum
-?datum: expression | record | tuple | null
+?datum: expression | record | tuple | null | each
+each: "each" (record | tuple)
 record: "{" binding ("," binding)* "}"
 tuple: "[" datum ("," datum)* "]"
 null: "null"

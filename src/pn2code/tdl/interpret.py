@@ -13,7 +13,7 @@ Scripts have mm and degrees; commands leave in SI, measurements come back in SI.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import astuple
 from pathlib import PurePath
 from typing import Any, Final, assert_never, cast
@@ -25,6 +25,7 @@ from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.evaluate import (
+    Element,
     ScriptError,
     ScriptPose,
     ScriptValue,
@@ -35,8 +36,9 @@ from pn2code.tdl.messages import (
     along_to_si,
     axes_to_si,
     from_si,
+    items_of_columns,
+    message_of,
     scalar_of,
-    scalars_of,
     stored_value,
     to_si,
     typed_values,
@@ -262,11 +264,11 @@ class Interpreter:
                 self._on_event(MessageConsumed(channel, message, self._line))
             case t.Write(file, values):
                 kinds = self._program.files[file.name].types
-                scalars = tuple(
-                    x
+                stored = [
+                    stored_value(evaluate(v, self), kind)
                     for kind, v in zip(kinds, values, strict=False)
-                    for x in scalars_of(stored_value(evaluate(v, self), kind))
-                ) or (1,)  # a signal
+                ]
+                scalars = message_of(stored, kinds[: len(stored)]) or (1,)  # a signal
                 channel = self._channel[file.name]
                 self._files.write(channel, scalars)
                 self._on_event(MessageWritten(channel, scalars, self._line))
@@ -329,6 +331,9 @@ class Interpreter:
                 return {name: self._datum(inner) for name, inner in fields}
             case t.TupleDatum(items):
                 return [self._datum(inner) for inner in items]
+            case t.EachDatum(item):
+                columns = [cast("tuple[Element, ...]", evaluate(e, self)) for e in paths.data(item)]
+                return [_filled(item, iter(parts)) for parts in items_of_columns(columns)]
             case t.NullDatum():
                 return None
             case _:
@@ -439,6 +444,19 @@ class Interpreter:
         if not isinstance(result, commands.Pose):
             raise ScriptError("the measurement gave no pose")
         self._assign(statement.target.name, from_si(result, asked, nominal))
+
+
+def _filled(x: t.Datum, parts: Iterator[Element]) -> Any:
+    """An item of a list of records as traces write it: with its own parts in place of the columns."""
+    match x:
+        case t.RecordDatum(fields):
+            return {name: _filled(inner, parts) for name, inner in fields}
+        case t.TupleDatum(items):
+            return [_filled(inner, parts) for inner in items]
+        case t.NullDatum():
+            return None
+        case _:
+            return _json(next(parts))
 
 
 def _json(value: ScriptValue) -> Any:

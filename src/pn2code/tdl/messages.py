@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple
+from itertools import groupby
 from typing import Any, cast
 
 import pn2code.robot.commands as commands
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import Element, ScriptError, ScriptPose, ScriptValue, single
+from pn2code.tdl.pretty import held
 from pn2code.tdl.requests import Scalar
 from pn2code.tdl.types import ELEMENT, POSE_FIELDS, Type
 
@@ -67,6 +69,36 @@ def scalars_of(value: ScriptValue) -> tuple[Scalar, ...]:
     return astuple(value) if isinstance(value, ScriptPose) else (value,)
 
 
+def message_of(values: Sequence[ScriptValue], kinds: Sequence[t.TypeName]) -> tuple[Scalar, ...]:
+    """The scalars of a message: of a list of records how many, and then all of the first, all of the second ...
+
+    Args:
+        values: in the order of the kinds, as the file holds them.
+        kinds: what the file holds.
+
+    Raises:
+        ScriptError: the columns of a list of records differ in length.
+    """
+    out: list[Scalar] = []
+    for row, group in groupby(zip(kinds, values, strict=True), lambda x: x[0].row):
+        found = [value for _, value in group]
+        if not row:
+            out += (x for value in found for x in scalars_of(value))
+            continue
+        columns = cast("list[tuple[Element, ...]]", found)
+        out.append(len(columns[0]))
+        out += (x for item in items_of_columns(columns) for part in item for x in scalars_of(part))
+    return tuple(out)
+
+
+def items_of_columns(columns: Sequence[tuple[Element, ...]]) -> list[tuple[Element, ...]]:
+    """The items of a list of records; ScriptError where its columns differ in length."""
+    if len(lengths := {len(column) for column in columns}) > 1:
+        shown = " and ".join(map(str, sorted(lengths)))
+        raise ScriptError(f"columns of one list of records have {shown} items")
+    return list(zip(*columns, strict=True))
+
+
 def typed_values(
     name: str, message: tuple[Scalar, ...], kinds: tuple[t.TypeName, ...]
 ) -> list[ScriptValue]:
@@ -74,24 +106,32 @@ def typed_values(
     values: list[ScriptValue] = []
     rest = list(message)
     try:
-        for kind in kinds:
-            if kind.type is Type.SIGNAL:
-                rest.pop(0)
+        for row, group in groupby(kinds, lambda x: x.row):
+            if row:
+                values += _columns(rest, [ELEMENT[kind.type] for kind in group])
                 continue
-            if kind.type in ELEMENT:
-                count = scalar_of(rest.pop(0), Type.INT)
-                values.append(tuple(_taken(rest, ELEMENT[kind.type]) for _ in range(count)))
-            else:
-                values.append(_taken(rest, kind.type))
+            for kind in group:
+                if kind.type is Type.SIGNAL:
+                    rest.pop(0)
+                elif kind.type in ELEMENT:
+                    values += _columns(rest, [ELEMENT[kind.type]])
+                else:
+                    values.append(_taken(rest, kind.type))
         if rest:
             raise ValueError
     except (IndexError, ValueError):
         words = " ".join(map(str, message))
-        wanted = ", ".join(str(k.type) for k in kinds)
         raise ScriptError(
-            f"file `{name}` holds `{words}`, but the script expects {wanted}"
+            f"file `{name}` holds `{words}`, but the script expects {held(kinds)}"
         ) from None
     return values
+
+
+def _columns(rest: list[Scalar], kinds: Sequence[Type]) -> list[tuple[Element, ...]]:
+    """The columns of a list from the beginning of a message: for each kind of its items one."""
+    count = scalar_of(rest.pop(0), Type.INT)
+    items = [[_taken(rest, kind) for kind in kinds] for _ in range(count)]
+    return [tuple(item[i] for item in items) for i in range(len(kinds))]
 
 
 def _taken(rest: list[Scalar], kind: Type) -> Element:

@@ -7,6 +7,7 @@ parse(SourceText("program p begin wait 2.5 s end program", Origin("p.tdl", 1, 1)
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import Any, cast
 
@@ -21,7 +22,7 @@ from pn2code.robot.commands import Effect, Handling
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import GRAMMAR, KEYWORDS
-from pn2code.tdl.types import MAX_INT, TYPES_BY_NAME, UNITS, Type
+from pn2code.tdl.types import LIST_OF, MAX_INT, ROWS, TYPES_BY_NAME, UNITS, Type
 
 MAX_EXPRESSION_DEPTH = 100
 MAX_BLOCK_DEPTH = 40
@@ -210,7 +211,7 @@ def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:
         if node.data == "block":
             blocks, expressions = blocks + 1, 0
         elif node.data in ("binary", "unary", "conditional", "parenthesised", "function", "field",
-                           "record", "tuple"):  # fmt: skip
+                           "record", "tuple", "each"):  # fmt: skip
             expressions += 1
         if blocks > MAX_BLOCK_DEPTH or expressions > MAX_EXPRESSION_DEPTH:
             what = "blocks are" if blocks > MAX_BLOCK_DEPTH else "the expression is"
@@ -265,10 +266,42 @@ class _Builder(Transformer[Token, Any]):
         return t.Program(str(name), tuple(declarations), tuple(procedures), body, self._span(meta))
 
     def file(self, meta: Meta, c: list[Any]) -> t.File:
-        direction, name, path, *types = c
+        direction, name, path, *held = c
+        types: list[t.TypeName] = []
+        row = 0
+        for x in held:
+            if isinstance(x, t.TypeName):
+                types.append(x)
+            else:
+                row += 1
+                types += (replace(column, row=row) for column in x)
         return t.File(
             t.Direction(str(direction)), str(name), _unquote(path), tuple(types), self._at(name)
         )
+
+    def rows(self, meta: Meta, c: list[Any]) -> list[t.TypeName]:
+        """The columns of a list of records."""
+        word, *columns = c
+        if str(word) != ROWS:
+            self._d.error(
+                codes.UNKNOWN_TYPE,
+                f"there is no type `{word}(...)`",
+                self._at(word),
+                hint=f"a list of records is `{ROWS}(int, word)`, with the types of their fields",
+            )
+            return []
+        out: list[t.TypeName] = []
+        for x in columns:
+            if x.type not in LIST_OF:
+                self._d.error(
+                    codes.TYPE,
+                    f"`{x.type}` cannot be a part of an item of a list",
+                    x.span,
+                    hint=f"it can be {', '.join(f'`{of}`' for of in LIST_OF)}",
+                )
+                continue
+            out.append(replace(x, type=LIST_OF[x.type]))
+        return out
 
     def const(self, meta: Meta, c: list[Any]) -> t.Const:
         return t.Const(str(c[0]), c[1], self._at(c[0]))
@@ -289,7 +322,7 @@ class _Builder(Transformer[Token, Any]):
                 self._at(c[0]),
                 hint=f"types are {', '.join(t for t in TYPES_BY_NAME)}",
             )
-        return t.TypeName(found or Type.INT, len(c) > 1, self._span(meta))
+        return t.TypeName(found or Type.INT, len(c) > 1, span=self._span(meta))
 
     def procedure(self, meta: Meta, c: list[Any]) -> t.Procedure:
         return t.Procedure(str(c[0]), c[1], self._at(c[0]))
@@ -463,6 +496,9 @@ class _Builder(Transformer[Token, Any]):
 
     def tuple(self, meta: Meta, c: list[Any]) -> t.TupleDatum:
         return t.TupleDatum(tuple(c), self._span(meta))
+
+    def each(self, meta: Meta, c: list[Any]) -> t.EachDatum:
+        return t.EachDatum(c[0], self._span(meta))
 
     def null(self, meta: Meta, c: list[Any]) -> t.NullDatum:
         return t.NullDatum(self._span(meta))

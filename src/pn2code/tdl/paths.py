@@ -151,19 +151,22 @@ def expressions_of(s: t.Simple) -> tuple[t.Expression, ...]:
         case t.Stop(message):
             return message
         case t.Mark(_, binding):
-            return tuple(e for _, x in binding for e in _data(x))
+            return tuple(e for _, x in binding for e in data(x))
         case _:
             return ()
 
 
-def _data(x: t.Datum) -> Iterator[t.Expression]:
+def data(x: t.Datum) -> Iterator[t.Expression]:
+    """The expressions that a value in a `mark` is made of."""
     match x:
         case t.RecordDatum(fields):
             for _, inner in fields:
-                yield from _data(inner)
+                yield from data(inner)
         case t.TupleDatum(items):
             for inner in items:
-                yield from _data(inner)
+                yield from data(inner)
+        case t.EachDatum(item):
+            yield from data(item)
         case t.NullDatum():
             return
         case _:

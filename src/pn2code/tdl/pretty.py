@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from itertools import groupby
 from typing import Final, assert_never
 
 from pn2code.robot.commands import Handling
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import KEYWORDS
-from pn2code.tdl.types import MAX_INT, MIN_INT
+from pn2code.tdl.types import ELEMENT, MAX_INT, MIN_INT, ROWS
 
 INDENT: Final = "  "
 
@@ -113,6 +114,8 @@ def datum(e: t.Datum) -> str:
             return "{" + ", ".join(_binding(f) for f in fields) + "}"
         case t.TupleDatum(items):
             return "[" + ", ".join(datum(i) for i in items) + "]"
+        case t.EachDatum(item):
+            return f"each {datum(item)}"
         case t.NullDatum():
             return "null"
         case _:
@@ -232,16 +235,25 @@ def statements(body: Iterable[t.Statement], indent: str = "") -> Iterator[str]:
 
 
 def type_name(name: t.TypeName) -> str:
-    """`pose single`."""
-    return f"{name.type}{' single' if name.single else ''}"
+    """`pose single`; of a column of a list of records, that of its items."""
+    kind = ELEMENT[name.type] if name.row else name.type
+    return f"{kind}{' single' if name.single else ''}"
+
+
+def held(types: Iterable[t.TypeName]) -> str:
+    """What a file holds: `int, rows(pose single, word)`."""
+    out: list[str] = []
+    for row, columns in groupby(types, lambda x: x.row):
+        names = map(type_name, columns)
+        out += [f"{ROWS}({', '.join(names)})"] if row else names
+    return ", ".join(out)
 
 
 def declaration(x: t.Declaration) -> str:
     """The line of a declaration."""
     match x:
         case t.File(direction, name, path, types):
-            kinds = ", ".join(type_name(k) for k in types)
-            return f"{direction.value} {name} {quoted(path)} : {kinds}"
+            return f"{direction.value} {name} {quoted(path)} : {held(types)}"
         case t.Const(name, value):
             return f"const {name} = {expression(value)}"
         case t.Variable(name, kind, initial):

@@ -155,7 +155,15 @@ class NullDatum:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-Datum = Expression | RecordDatum | TupleDatum | NullDatum
+@frozen
+class EachDatum:
+    """`each {a = k, b = l}`: a list of records, of which `k` and `l` are the columns."""
+
+    item: Datum
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Datum = Expression | RecordDatum | TupleDatum | NullDatum | EachDatum
 
 
 # --- statements --------------------------------------------------------------------------------
@@ -421,10 +429,16 @@ Statement = Simple | If | While | Loop
 
 @frozen
 class TypeName:
-    """A type, and whether its reals are rounded to single precision whenever a value is stored."""
+    """A type, and whether its reals are rounded to single precision whenever a value is stored.
+
+    Args:
+        row: of a list in a file, of which list of records it is a column; they are numbered from 1. 0: it is a list
+            of its own.
+    """
 
     type: Type
     single: bool = False
+    row: int = 0
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 

@@ -56,6 +56,8 @@ ELEMENT: dict[Type, Type] = {
     Type.WORDS: Type.WORD,
 }
 """What the elements of a list are."""
+ROWS = "rows"
+"""How files say that they hold a list of records: `rows(int, word)`. In the script each column is a list."""
 LIST_OF: dict[Type, Type] = {element: of for of, element in ELEMENT.items()}
 LISTS = frozenset(ELEMENT)
 IN_SCRIPT: dict[Type, Type] = {Type.WORD: Type.STRING, Type.WORDS: Type.STRINGS}

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.cell.config import CellConfig
@@ -44,8 +45,13 @@ _OPEN = {
     "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
     "belt": "how far a belt runs depends on the parts on it, which are not followed",
+    "time": "the time was over before all situations were looked at",
     "situations": "the cell can come to more situations than were looked at",
 }
+
+
+_OF_CYCLES = 0.8
+"""Of what is left of a limited time, the part in which cycles are looked at: answers take some, too."""
 
 
 @frozen(eq=False)
@@ -131,7 +137,7 @@ def look(
     for name, cell in cells:
         stage("measuring commands and cycles ...")
         one = _Look(graph, cell, config, name, folder, opened)
-        made.append(one.layout(say))
+        made.append(one.layout(say, limits.deadline))
         measured(Measured(one.search, one.anyhow))
     return Times(tuple(made), timeout)
 
@@ -156,10 +162,14 @@ class _Look:
         owners = graph.partition.owners
         self.owner = {o.index: o.name for o in owners}
 
-    def layout(self, say: Say) -> Layout:
-        """All that is known."""
+    def layout(self, say: Say, deadline: Deadline) -> Layout:
+        """All that is known; what holds in whatever order commands end is looked at first, and has to be known."""
         self.anyhow.explore(HowFar(say, "measuring commands", noun="situations"))
-        self.search.explore(HowFar(say, "measuring cycles", noun="situations"))
+        try:
+            with deadline.share(_OF_CYCLES).enforced():
+                self.search.explore(HowFar(say, "measuring cycles", noun="situations"))
+        except TimeIsOverError:
+            self.search.why = "time"
         return Layout(
             self.name,
             tuple(self._commands()),

@@ -28,6 +28,7 @@ from pn2code.timing.answers import Cycle, Layout, near, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
+from pn2code.timing.own_work import by_own_work
 from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
@@ -167,15 +168,21 @@ class _Judge:
             return Answer(a.about, "inconclusive", where + why, cell=True)
 
         cycle = layout.cycle
-        if cycle.why and cycle.bounded is None:
-            return open_(cycle.why)
         first, second = self._event(one, asked.first), self._event(one, asked.second)
         if first is None or second is None:
             return open_("of events with durations only `fires(..)` is looked at")
         limit = math.floor(float(asked.time) * NS)
         search = one.search
         if cycle.why:
-            return self._bounded(a, one, layout, (first, second), limit)
+            found = open_(cycle.why)
+            if cycle.bounded is not None:
+                found = self._bounded(a, one, layout, (first, second), limit)
+            own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
+            if own is None or found.answer == "yes":
+                return found
+            if isinstance(own, Answer):
+                return own
+            return found if cycle.bounded is not None else open_(f"{cycle.why}; {own}")
         over = _over(search, second)
         wait = longest_wait(search.successors, first, second, over | search.ends, over)
         if wait.ns is None:
@@ -227,6 +234,26 @@ class _Judge:
             else:
                 return self._yes(a, slow, AT_MOST)
         return Answer(a.about, "inconclusive", where + why, cell=True)
+
+    def _by_own_work(
+        self, a: Answer, one: Measured, events: tuple[Is, Is], limit: int
+    ) -> Answer | str | None:
+        """Where not all situations are known: by what one program does between the two events.
+
+        In words how long that is at most where it is too long; None: somebody else is waited for.
+        """
+        control, anyhow = self.control, one.anyhow
+        if control is None or control.stops or anyhow.faults or anyhow.halts:
+            return None
+        wait = by_own_work(anyhow, *events)
+        if wait is None:
+            return None
+        if wait.ns is None:
+            return f"in some order of commands {_WHY[wait.why]}" if wait.why in _WHY else None
+        if wait.ns + TIE > limit:
+            return f"no wait is longer than {seconds_up(wait.ns)} s"
+        in_time = control.premises.replies.premise
+        return self._yes(a, wait, AT_MOST, *([in_time] if in_time else []))
 
     def _event(self, one: Measured, f: m.Formula) -> Is | None:
         """Whether an element is the event; None: the event is not one of steps alone."""

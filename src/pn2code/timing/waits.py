@@ -52,11 +52,7 @@ def longest_wait(
         ends: the nodes in which the cycle may be over.
         over: those of them from which the second event is not waited for as nobody begins it any more.
     """
-    begun: dict[int, tuple[int, int]] = {}
-    for node, arcs in enumerate(successors):
-        for target, _, mark in arcs:
-            if first(mark):
-                begun.setdefault(target, (node, mark))
+    begun = _begun(successors, first)
     if not begun:
         return Wait(0)
     inside = _until(successors, begun, second)
@@ -95,6 +91,21 @@ def longest_wait(
     if any(node in ends for node in inside):
         return Wait(None, "ends")
     return told(found.arcs, "", found.ns)
+
+
+def waiting(successors: Sequence[Sequence[Arc]], first: Is, second: Is) -> tuple[int, ...]:
+    """All nodes in which the second event is waited for after the first."""
+    return _until(successors, _begun(successors, first), second)
+
+
+def _begun(successors: Sequence[Sequence[Arc]], first: Is) -> dict[int, tuple[int, int]]:
+    """The nodes behind the event: from where it leads there, and its mark."""
+    begun: dict[int, tuple[int, int]] = {}
+    for node, arcs in enumerate(successors):
+        for target, _, mark in arcs:
+            if first(mark):
+                begun.setdefault(target, (node, mark))
+    return begun
 
 
 def _until(

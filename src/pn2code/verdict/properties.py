@@ -250,7 +250,7 @@ def answered(
             answer.answer == "no"
             and _has_run(answer.about.asked)
             and found.approximation is None
-            and found.why in _WITH_RUNS
+            and had_time(answer, found, control)
         ):
             d.warning(
                 TRACE_UNWRITABLE,
@@ -259,6 +259,12 @@ def answered(
                 hint="give another folder with `--traces DIR`",
             )
     return tuple(looked)
+
+
+def had_time(answer: Answer, found: Exploration, control: Control | None) -> bool:
+    """Whether there was time to look for the run of an answer, in the net and, if it is one of a cell, in that."""
+    of_cell = control.found if answer.cell and control is not None else None
+    return all(x is None or x.why in _WITH_RUNS for x in (found, of_cell))
 
 
 def _pumped(a: Answer, run: Covering, opened: OpenNet, folder: Path, number: int) -> Answer:

@@ -672,11 +672,6 @@ REFUSED = {
         (),
         "error[unsupported-robot-colset] place `A` has colour set `ROWS`, which robot scripts do not have",
     ),
-    "list of records": (
-        "place A : PAIRS = 1`[]\ntrans T\n  both A : pairs",
-        (),
-        "error[unsupported-robot-colset] place `A` has colour set `PAIRS`, which robot scripts do not have",
-    ),
     "function on lists": (
         "place A = 1\ntrans T\n  both A\n  in x : n\n  out y : hd (List.take ([n, 1], 1))",
         ("x in INT", "y out INT"),
@@ -718,9 +713,7 @@ colset TUNIT = unit timed;
 colset INTS = list INT;
 colset ROWS = list INTS;
 colset PAIR = product INT * INT;
-colset PAIRS = list PAIR;
 var rows : ROWS;
-var pairs : PAIRS;
 var l : INTS;
 fun fac 0 = 1 | fac n = n * fac (n - 1);
 fun part (n, true) = n | part (1, false) = 2;
@@ -775,8 +768,8 @@ LISTS = {
     "KIND": True,
     "POSE6": True,
     "INTS": False,
-    "PAIR": False,
-    "PROD": False,
+    "PAIR": True,
+    "PROD": True,
     "UNIT": False,
     "ESOP": False,
 }
@@ -801,7 +794,7 @@ var items : ITEMS;""".replace("ELEMENT", element)
         assert error.code == "unsupported-robot-colset"
         assert error.hint.endswith(
             "lists of booleans, integers, times, reals, strings, enumerations or poses (records of "
-            "six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order)"
+            "six reals `x`, `y`, `z`, `rx`, `ry`, `rz`, in this order), or of records and products of these"
         )
 
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.properties import meaning as m
 from pn2code.properties.silent import means_the_same
 from pn2code.properties.universal import is_universal
@@ -40,10 +40,27 @@ _CHOICES = (
 )
 _NEXT = "it is about the very next step, but between two occurrences the programs take steps of their own"
 _INITIAL = "when the net returns to its initial marking, the programs are not at their start again"
-_WAITS = (
-    "the net knows neither how long moves take nor how late the supervisor is (`--durations` measures "
-    "moves)"
-)
+
+
+def waits(asked: m.Response, partition: Partition) -> str:
+    """What the net does not know of a time: how long that takes which those do whose steps the property names."""
+    named = [x for f in (asked.first, asked.second) for x in m.atoms(f)]
+    fired = {x.number for x in named if x.kind == "fires"}
+    owners = {partition.transition_owner[t] for t in fired}
+    of_steps = all(x.kind == "fires" for x in named)
+    whole = {o.index for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR}
+    doing = owners if of_steps and owners <= whole and len(owners) == 1 else whole
+    names = [f"`{o.name}`" for o in partition.owners if o.index in doing]
+    if any(partition.owners[i].kind is OwnerKind.ROBOT for i in doing):
+        what, measured = "moves take", "moves"
+    elif len(names) == 1:
+        what, measured = f"what device {names[0]} does takes", "it"
+    else:
+        what, measured = "what devices do takes", "it"
+    return (
+        f"the net knows neither how long {what} nor how late the supervisor is "
+        f"(`--durations` measures {measured})"
+    )
 
 
 _ORDERS = (
@@ -163,7 +180,7 @@ def _certain(
     if answer.answer == "inconclusive":
         return replace(answer, node=None)
     if isinstance(asked, m.Response) and asked.time is not None:
-        open_ = _WAITS
+        open_ = waits(asked, control.partition)
     elif not means_the_same(asked, answer.answer):
         is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
         open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
