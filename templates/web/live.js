@@ -35,7 +35,9 @@ class LivePage extends ReplayPage {
   }
 
   /** The address keeps no moments: it is that of what happens now. */
-  address() {}
+  moment() {
+    return "";
+  }
 
   fromAddress() {
     return false;
