@@ -11,7 +11,7 @@ import { byId, el, reachable } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
 import { Messages, Steps } from "./messages.js";
-import { Moments } from "./moment.js";
+import { Moments, SHOWN } from "./moment.js";
 import { NetView } from "./netview.js";
 import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
@@ -24,6 +24,8 @@ const PANES_MS = 200;
 const PICTURES = 3;
 /** An address is not written more often: browsers forbid it. */
 const LATER_MS = 250;
+/** Of a longer number (a time of a net may have thousands) only so much has room. */
+const MOST_DIGITS = 14;
 
 export class ReplayPage {
   /** @param {{runs: any[], differences: any, names: string[], generator: string, missing: string}} data */
@@ -61,6 +63,7 @@ export class ReplayPage {
     this.clock.listen(() => this.update());
     addEventListener("keydown", (e) => this.key(e));
     addEventListener("hashchange", () => (this.arrange(), this.fromAddress()));
+    this.widen();
     this.arrange();
     this.arranged();
     this.fromAddress() || this.update();
@@ -217,6 +220,13 @@ export class ReplayPage {
     if (members.length && !members.includes(this.net.current)) this.net.show(members[0]);
     this.net.mark(-1, p);
     this.messages?.reveal(p);
+  }
+
+  /** Moments of long runs have more digits: they get room. */
+  widen() {
+    const { end, course } = this.clock;
+    const digits = Math.max(end.toFixed(SHOWN).length, String(course.clock?.[course.steps - 1] ?? "").length);
+    document.body.style.setProperty("--digits", String(Math.min(digits, MOST_DIGITS)));
   }
 
   /** Rows of the time axis and its height, as the address says. */

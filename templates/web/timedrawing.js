@@ -10,6 +10,9 @@ export const HEAD = 20;
 const FONT = "12px system-ui, sans-serif";
 /** Of names of lanes that are folded. */
 const SMALL = "10px system-ui, sans-serif";
+/** Between marks of an axis of minutes and hours (s), and the finest there is: nothing shows less. */
+const MINUTES = [60, 120, 300, 600, 1200, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
+const FINEST = 0.001;
 /** Where the axis begins: right of the names, if these leave two thirds of the width to it. */
 const NAMES = { least: 108, most: 260, all: 0.33 };
 
@@ -89,6 +92,16 @@ export function drawMoment(view, c, h) {
 }
 
 /**
+ * A moment of a long run.
+ * @param {number} t whole minutes in seconds
+ */
+function hours(t) {
+  const minutes = Math.round(t / 60);
+  const words = [[Math.floor(minutes / 60), "h"], [minutes % 60, "min"]].filter(([n]) => n);
+  return words.length ? words.map(([n, unit]) => `${n} ${unit}`).join(" ") : "0 s";
+}
+
+/**
  * @param {Timeline} view
  * @param {CanvasRenderingContext2D} c
  * @param {number} w
@@ -98,7 +111,9 @@ function axis(view, c, w, h) {
   const wanted = (view.to - view.from) / Math.max((w - view.left) / 90, 1);
   const power = 10 ** Math.floor(Math.log10(wanted));
   const found = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
-  const step = view.run.clock === "seconds" ? found : Math.max(found, 1); // there is no half of a step
+  const isSeconds = view.run.clock === "seconds";
+  const long = isSeconds && wanted > 30 ? (MINUTES.find((s) => s >= wanted) ?? Math.ceil(wanted / 86400) * 86400) : 0;
+  const step = long || Math.max(found, isSeconds ? FINEST : 1); // there is no half of a step
   c.fillStyle = view.ink?.faint ?? "";
   c.strokeStyle = view.ink?.line ?? "";
   c.lineWidth = 1;
@@ -111,7 +126,7 @@ function axis(view, c, w, h) {
     c.moveTo(x, HEAD);
     c.lineTo(x, h);
     c.stroke();
-    const label = unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
+    const label = long ? hours(t) : unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
     c.fillText(label, Math.min(x, w - 6 - c.measureText(label).width / 2), HEAD / 2);
   }
   c.textAlign = "right";

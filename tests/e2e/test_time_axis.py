@@ -23,6 +23,16 @@ _SEEN = """() => {
            lanes: lanes.map((lane) => lane.height), curves: curves.map((chart) => chart.height) };
 }"""
 
+_NOTING = """
+  window.labels = [];
+  const own = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {
+    labels.push(text);
+    return own.call(this, text, ...rest);
+  };
+"""
+"""Keeps what is written on canvases."""
+
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
@@ -150,3 +160,47 @@ def test_rows_fold_under_a_finger(tmp_path: Path, chromium: Any) -> None:
         high = browser.page.get_by_role("button", name="robot3").bounding_box()["height"]
         assert 20 <= high < min(h for i, h in enumerate(seen(browser)["lanes"]) if i != 3)
         assert complaints(browser) == []
+
+
+@pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
+def test_a_day_has_hours_and_room_for_its_digits(
+    tmp_path: Path, chromium: Any, options: dict[str, Any]
+) -> None:
+    with opened(chromium, **options) as browser:
+        browser.page.add_init_script(_NOTING)
+        browser.open(written(tmp_path, with_arm(described(tmp_path, PAIR), tempo=2880.0)))
+        if options:
+            browser.page.get_by_role("button", name="Time", exact=True).tap()
+        browser.settled()
+        labels = browser.ask("() => labels.filter((text) => / (s|h|min)$/.test(text))")
+        assert "12 h" in labels and "0 s" in labels and not any(x.endswith("00 s") for x in labels)
+        time = browser.page.get_by_role("textbox", name="Moment in seconds")
+        time.fill("12:00:00")
+        time.press("Enter")
+        browser.wait("replay.page.clock.t === 43200")
+        assert time.get_attribute("title") == "12:00:00"
+        cut = "(e) => e.scrollWidth > e.clientWidth"
+        assert time.input_value() == "43200.00" and not time.evaluate(cut)
+        if options:
+            browser.page.get_by_role("button", name="More", exact=True).tap()
+        browser.settled()
+        when = browser.page.locator("#panel-messages .rows .when").last
+        assert len(when.text_content() or "") == 8 and not when.evaluate(cut)
+        assert complaints(browser) == []
+
+
+def test_runs_of_no_length_have_an_axis(tmp_path: Path, chromium: Any) -> None:
+    with opened(chromium) as browser:
+        for run in (
+            with_arm(described(tmp_path, PAIR), tempo=0.0),
+            with_arm(described(tmp_path, PAIR, steps=0)),
+            described(tmp_path, PAIR, steps=0),
+        ):
+            browser.page.add_init_script(_NOTING)
+            browser.open(written(tmp_path, run))
+            browser.settled()
+            labels = browser.ask("() => labels.filter((text) => /^[0-9.]+( s)?$/.test(text))")
+            assert labels and {float(text.removesuffix(" s")) for text in labels} == {0.0}
+            browser.page.keyboard.press("End")
+            browser.settled()
+            assert browser.errors == []
