@@ -126,6 +126,7 @@ export class ReplayPage {
     }
     this.code?.update(true);
     this.watch?.update();
+    for (const panel of [this.messages, this.steps]) panel?.list.tellWhole();
   }
 
   /** @param {any} host */
