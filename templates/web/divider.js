@@ -6,15 +6,19 @@ import { el } from "./dom.js";
 const LEAST = 15;
 const MOST = 75;
 const STEP = 5;
+/** What panes have between them and below (CSS pixels). */
+const BETWEEN = 16;
 
 export class Divider {
   /**
    * @param {HTMLElement} main the panes
+   * @param {HTMLElement} transport above which it lies
    * @param {HTMLElement} lower one of the panes below
    * @param {() => void} onMoved
    */
-  constructor(main, lower, onMoved) {
+  constructor(main, transport, lower, onMoved) {
     this.main = main;
+    this.transport = transport;
     this.lower = lower;
     this.onMoved = onMoved;
     /** How much of the height is below (%); 0: as much as the page thinks right. */
@@ -23,7 +27,7 @@ export class Divider {
       class: "divider", role: "separator", tabindex: 0, "aria-orientation": "horizontal", "aria-label": "Height of the time axis",
       "aria-valuemin": LEAST, "aria-valuemax": MOST, title: "Drag, or ↑ and ↓: height of the time axis. Click twice: as before",
     });
-    main.append(this.bar);
+    transport.before(this.bar);
     this.bar.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => this.bar.setPointerCapture(e.pointerId));
     this.bar.addEventListener("pointermove", (/** @type {PointerEvent} */ e) => this.drag(e));
     this.bar.addEventListener("dblclick", () => this.set(0));
@@ -44,8 +48,7 @@ export class Divider {
   drag(e) {
     if (!this.bar.hasPointerCapture(e.pointerId)) return;
     const { bottom, height } = this.main.getBoundingClientRect();
-    const above = document.getElementById("transport")?.offsetHeight ?? 0;
-    this.set((100 * (bottom - e.clientY - above - 16)) / height);
+    this.set((100 * (bottom - e.clientY - this.transport.offsetHeight - BETWEEN)) / height);
   }
 
   /** @param {KeyboardEvent} e */

@@ -52,7 +52,7 @@ export class ReplayPage {
     this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
       onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k), onFold: () => this.arranged(),
     });
-    this.divider = new Divider(/** @type {HTMLElement} */ (byId("timeline").parentElement), byId("panels"), () => this.arranged());
+    this.divider = new Divider(/** @type {HTMLElement} */ (byId("timeline").parentElement), byId("transport"), byId("panels"), () => this.arranged());
     this.panels(actions);
     this.search = new Search(byId("search"), this.clock, actions);
     this.transport = new Transport(byId("transport"), this.clock, {
