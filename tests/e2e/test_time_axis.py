@@ -204,3 +204,41 @@ def test_runs_of_no_length_have_an_axis(tmp_path: Path, chromium: Any) -> None:
             browser.page.keyboard.press("End")
             browser.settled()
             assert browser.errors == []
+
+
+_PLAYED = """async (rounds) => {
+  const { page } = replay;
+  const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  for (let i = 0; i < rounds; i++) {
+    page.clock.seek((i * 7.3) % page.clock.end);
+    page.tab(["Messages", "Steps", "Watch", "Run"][i % 4]);
+    if (i % 5 === 0) page.timeline.folds.foldAll();
+    if (i % 7 === 0) page.frame.dark();
+    await drawn();
+  }
+  page.clock.seek(0);
+  page.tab("Run");
+  await drawn();
+  const { geometries, textures } = page.cell.renderer.info.memory;
+  return [geometries, textures, document.querySelectorAll("*").length];
+}"""
+
+
+def test_nothing_is_left_behind_by_moving_about(tmp_path: Path, chromium: Any) -> None:
+    """Elements, listeners and shapes after many moments, panels and folds are those of a few."""
+    with opened(chromium) as browser:
+        browser.open(of_arms(tmp_path, 3))
+        devtools = browser.page.context.new_cdp_session(browser.page)
+        devtools.send("Performance.enable")
+
+        def kept(rounds: int) -> list[int]:
+            seen: list[int] = browser.ask(_PLAYED, rounds)
+            devtools.send("HeapProfiler.collectGarbage")
+            rows = devtools.send("Performance.getMetrics")["metrics"]
+            told = {row["name"]: int(row["value"]) for row in rows}
+            return [*seen, told["Nodes"], told["JSEventListeners"]]
+
+        before, after = kept(20), kept(80)
+        assert after[:3] == before[:3]
+        assert all(late <= early + 40 for early, late in zip(before[3:], after[3:], strict=True))
+        assert browser.errors == []
