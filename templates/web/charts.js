@@ -7,11 +7,20 @@ import { fitting } from "./dom.js";
 /** How high a line of a legend is, and how wide what shows the colour. */
 export const LABEL = 11;
 const SWATCH = 20;
+/** Names of rows stand right of the sign that they can be folded. */
+export const NAME = 20;
+/** How high a chart is of which only the title is shown. */
+const FOLDED = 18;
+/** Where a legend has a line for each arm: what it keeps from others, and from itself. */
+const COLUMNS = /** @type {[string, number][]} */ ([["scene", 8], ["self", 48]]);
+const BESIDE = 78;
 /** An axis ends at so many times the limit: a singularity must not make all else a line. */
 const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 /** Below the title of a chart its legend begins. */
 const LEGEND = 21;
+/** More curves have a line for each arm instead of one of their own. */
+const MOST_LINES = 5;
 /** Between charts, and above them (CSS pixels). */
 const GAP = 8;
 
@@ -24,7 +33,7 @@ const HIGHEST_CURVE = 150;
  * @param {any} chart
  */
 function lowest(chart) {
-  return Math.max(LOWEST_CURVE, LEGEND + LABEL * chart.curves.length);
+  return chart.isFolded ? FOLDED : Math.max(LOWEST_CURVE, LEGEND + LABEL * (chart.legend.length + (hasColumns(chart) ? 1 : 0)));
 }
 
 /**
@@ -42,10 +51,10 @@ export function lowestHeight(drawn) {
  * @param {number} height
  */
 export function divideHeight(drawn, y, height) {
-  const more = (height - lowestHeight(drawn)) / drawn.length;
+  const more = (height - lowestHeight(drawn)) / Math.max(drawn.filter((chart) => !chart.isFolded).length, 1);
   for (const chart of drawn) {
     chart.y = y + GAP;
-    chart.height = Math.min(lowest(chart) + more, Math.max(HIGHEST_CURVE, lowest(chart)));
+    chart.height = chart.isFolded ? FOLDED : Math.min(lowest(chart) + more, Math.max(HIGHEST_CURVE, lowest(chart)));
     y = chart.y + chart.height;
   }
 }
@@ -81,7 +90,29 @@ function named(curve) {
  */
 export function legendWidth(c, drawn) {
   const wide = (/** @type {string} */ text) => c.measureText(text).width;
-  return Math.max(0, ...drawn.flatMap((chart) => [wide(chart.title), ...chart.curves.map((/** @type {any} */ curve) => wide(named(curve)) + SWATCH + 4)]));
+  const begins = (/** @type {any} */ chart) => (hasColumns(chart) ? BESIDE : SWATCH + 12);
+  return Math.max(0, ...drawn.flatMap((chart) => [wide(chart.title) + NAME, ...chart.legend.map((/** @type {any} */ line) => wide(line.text) + begins(chart))]));
+}
+
+/**
+ * What stands beside a chart: a line for each curve, or, of many curves, for each arm.
+ * @param {any[]} own its curves
+ * @returns {{text: string, curves: number[]}[]} which curves a line names
+ */
+function legendOf(own) {
+  const lines = own.map((/** @type {any} */ curve, /** @type {number} */ i) => ({ text: named(curve), curves: [i] }));
+  const arms = [...new Set(own.map((/** @type {any} */ curve) => armOf(curve.of)))];
+  if (own.length <= MOST_LINES || arms.length === own.length) return lines;
+  const find = (/** @type {string} */ of) => own.findIndex((/** @type {any} */ curve) => curve.of === of);
+  return arms.map((arm) => {
+    const both = [`scene.${arm}`, `self.${arm}`].map(find);
+    return { text: arm, curves: both.some((i) => i >= 0) ? both : [find(arm), -1] };
+  });
+}
+
+/** @param {any} chart whether its legend has a line for each arm */
+function hasColumns(chart) {
+  return chart.legend.some((/** @type {any} */ line) => line.curves.length > 1);
 }
 
 /**
@@ -106,7 +137,7 @@ export function charts(run) {
         high = Math.max(high, v * scale);
       }
     }
-    charts.push({ title, kind, curves: own, looks: own.map((/** @type {any} */ c) => look(c.of, arms)), scale, limit, low: Math.max(low * 0.85, 1), high: Math.min(Math.max(high * 1.15, 2), MOST * limit), y: 0, height: LOWEST_CURVE });
+    charts.push({ title, kind, key: kind, name: title, isFolded: false, legend: legendOf(own), curves: own, looks: own.map((/** @type {any} */ c) => look(c.of, arms)), scale, limit, low: Math.max(low * 0.85, 1), high: Math.min(Math.max(high * 1.15, 2), MOST * limit), y: 0, height: LOWEST_CURVE });
   }
   return charts;
 }
@@ -122,7 +153,8 @@ export function drawChart(c, axis, chart, w) {
   const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
   const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
   c.fillStyle = axis.ink?.text ?? "";
-  c.fillText(chart.title, 8, y + 8);
+  c.fillText(chart.title, NAME, y + 8);
+  if (chart.isFolded) return;
   c.save();
   c.beginPath();
   c.rect(axis.left, y - 1, w - axis.left, CURVE + 2);
@@ -157,28 +189,50 @@ export function drawChart(c, axis, chart, w) {
     c.stroke();
   });
   c.restore();
-  chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => drawLegend(c, axis, curve, chart.looks[i], y + LEGEND + i * LABEL));
+  drawLegend(c, axis, chart);
 }
 
 /**
- * Its name is in the colour of texts: not all colours of curves can be read on all grounds.
+ * Names are in the colour of texts: not all colours of curves can be read on all grounds.
  * @param {CanvasRenderingContext2D} c
  * @param {any} axis as above
- * @param {any} curve
+ * @param {any} chart
+ */
+function drawLegend(c, axis, chart) {
+  let y = chart.y + LEGEND;
+  const isWide = hasColumns(chart);
+  const begin = isWide ? BESIDE : SWATCH + 12;
+  if (isWide) {
+    c.fillStyle = axis.ink?.faint ?? "";
+    for (const [word, x] of COLUMNS) c.fillText(word, x, y);
+    y += LABEL;
+  }
+  for (const { text, curves } of chart.legend) {
+    curves.forEach((/** @type {number} */ i, /** @type {number} */ column) => {
+      if (i >= 0) swatch(c, axis, chart.looks[i], COLUMNS[column][1], y);
+    });
+    c.fillStyle = axis.ink?.text ?? "";
+    c.fillText(fitting(c, text, axis.left - begin - 4), begin, y);
+    y += LABEL;
+  }
+}
+
+/**
+ * @param {CanvasRenderingContext2D} c
+ * @param {any} axis as above
  * @param {{colour: string | null, dash: number[]}} look
+ * @param {number} x
  * @param {number} y
  */
-function drawLegend(c, axis, curve, { colour, dash }, y) {
+function swatch(c, axis, { colour, dash }, x, y) {
   c.strokeStyle = colour ?? axis.ink?.text ?? "";
   c.lineWidth = 3;
   c.setLineDash(dash);
   c.beginPath();
-  c.moveTo(8, y);
-  c.lineTo(8 + SWATCH, y);
+  c.moveTo(x, y);
+  c.lineTo(x + SWATCH, y);
   c.stroke();
   c.setLineDash([]);
-  c.fillStyle = axis.ink?.text ?? "";
-  c.fillText(fitting(c, named(curve), axis.left - SWATCH - 16), 12 + SWATCH, y);
 }
 
 /**

@@ -67,6 +67,24 @@ export function reachable(node) {
 }
 
 /**
+ * Says something new. The same once more is not said: what listens to a page would repeat it.
+ * @param {any} node
+ * @param {string} text
+ */
+export function tell(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+/**
+ * What has the focus, if it came there by keys: what it opens gets the focus then, and Escape gives it back.
+ * @returns {any}
+ */
+export function reachedByKeys() {
+  const { activeElement } = document;
+  return activeElement !== document.body && activeElement?.matches(":focus-visible") ? activeElement : null;
+}
+
+/**
  * A text of at most so many characters.
  * @param {string} text
  * @param {number} most

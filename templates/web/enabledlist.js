@@ -1,7 +1,7 @@
 // @ts-check
 /** What is enabled, and the bindings of a transition: choose one, or type a part of it. */
 
-import { el } from "./dom.js";
+import { el, reachedByKeys } from "./dom.js";
 import { bound, field, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
@@ -30,6 +30,9 @@ export class EnabledList {
     /** Transitions that raise an exception when they are asked whether they are enabled. */
     this.raises = el("ul", { class: "plain raising", hidden: true, "aria-label": "Transitions that raise an exception" });
     host.append(this.chosen, this.what, this.rows, this.raises);
+    this.chosen.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => e.key === "Escape" && this.leave());
+    /** From where keys came into the bindings. @type {any} */
+    this.back = null;
     this.asked = 0;
     /** Rows that were made, by transition. @type {Map<number, any>} */
     this.made = new Map();
@@ -66,12 +69,15 @@ export class EnabledList {
    */
   order(wanted) {
     const kept = new Set(wanted);
+    const hadFocus = this.rows.contains(document.activeElement);
     for (const row of [...this.rows.children]) if (row !== this.more && !kept.has(row)) row.remove();
     let at = this.rows.firstChild;
     for (const row of wanted) {
       if (row === at) at = at.nextSibling;
       else this.rows.insertBefore(row, at);
     }
+    // The one that had the focus is not enabled any more: the keys stay in the list.
+    if (hadFocus && !this.rows.contains(document.activeElement)) this.rows.querySelector("button")?.focus();
   }
 
   /**
@@ -89,11 +95,34 @@ export class EnabledList {
       el("button", {
         text: variables.length ? "Bindings" : "Show", "aria-label": `Bindings of ${short}`, onclick: () => {
           this.actions.show(t);
-          this.list(t);
+          this.enter(t);
         },
       }));
     this.made.set(t, made);
     return made;
+  }
+
+  /**
+   * Somebody wants the bindings of a transition; who uses keys is among them then, until Escape.
+   * @param {number} t
+   */
+  async enter(t) {
+    const from = reachedByKeys();
+    await this.list(t);
+    if (!from || t !== this.transition) return;
+    if (!this.chosen.contains(from)) this.back = from;
+    this.focus(0);
+  }
+
+  /** @param {number} i of the bindings; where there is none, that to filter them */
+  focus(i) {
+    const offers = this.chosen.querySelectorAll(".bindings button");
+    (offers[Math.min(i, offers.length - 1)] ?? this.filter?.input)?.focus();
+  }
+
+  leave() {
+    this.close();
+    this.back?.focus();
   }
 
   /**
@@ -110,12 +139,14 @@ export class EnabledList {
       return;
     }
     const { rows, cut, seen } = answer.result;
+    const focused = [...this.chosen.querySelectorAll(".bindings button")].indexOf(document.activeElement);
     const count = `${rows.length} binding${rows.length === 1 ? "" : "s"}`;
     const said = cut ? `The first ${rows.length} of more; ${seen.toLocaleString("en")} were looked at. Type a part of it.` : rows.length ? count : "No binding is enabled.";
     this.list_?.replaceChildren(
       el("p", { class: "note", text: said }),
       el("ul", { class: "plain bindings", "aria-label": "Enabled bindings" }, ...rows.map((/** @type {any} */ row, /** @type {number} */ i) =>
         el("li", {}, el("button", { onclick: () => this.choose(i) }, row.length ? bound(row) : "without variables")))));
+    if (focused >= 0) this.focus(focused); // of the next step, with the same keys
   }
 
   /** @param {number} t */

@@ -15,7 +15,7 @@ export class Evaluate {
     this.link = link;
     this.field = field({
       label: "Expression in CPN ML", placeholder: "length (Mark.Page'Place 1)", button: "Evaluate", rows: 2,
-      title: "Ctrl-Enter", work: (text) => this.work(text),
+      shiftForRow: true, title: "Enter; Shift-Enter begins a new line", work: (text) => this.work(text),
     });
     this.rows = el("ol", { class: "plain answers", "aria-live": "polite", "aria-label": "Values" });
     this.printed = el("pre", { class: "whole", hidden: true, tabindex: "0", role: "group", "aria-label": "What the net has printed" });

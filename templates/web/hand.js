@@ -1,7 +1,7 @@
 // @ts-check
 /** A person's hand in a run: questions of sensors, and what can be made to fail, stand, or come late. */
 
-import { byId, el } from "./dom.js";
+import { byId, el, tell } from "./dom.js";
 
 /** @typedef {{number: number, party: string, sensor: string, variable: string, says: string, allowed: string, line: number, values: string[], own: string, left: number}} Question */
 
@@ -103,9 +103,9 @@ export class Hand {
   /** @param {any} told how things are now */
   update(told) {
     const { present, questions, ways, held, fates, refused } = told;
-    this.note.textContent = present
+    tell(this.note, present
       ? `Taking part: ${present}. Whoever is asked has ${this.described.patience} s to answer; then the sensor says what it says by itself.`
-      : "Nobody takes part: sensors say what they say by themselves.";
+      : "Nobody takes part: sensors say what they say by themselves.");
     if (refused[0] !== this.refused) {
       this.refused = refused[0];
       this.said.textContent = refused[1];
@@ -143,7 +143,7 @@ export class Hand {
     }
     for (const q of questions) {
       const left = this.asked.querySelector(`[data-number="${q.number}"] .left`);
-      if (left) left.textContent = `by itself: ${q.own} in ${Math.ceil(q.left)} s`;
+      if (left) tell(left, `by itself: ${q.own} in ${Math.ceil(q.left)} s`);
     }
   }
 
@@ -157,6 +157,6 @@ export class Hand {
       ? q.values.map((v) => el("button", { text: v, class: v === q.own ? "own" : null, onclick: () => say(v) }))
       : [el("form", { onsubmit: (/** @type {Event} */ e) => (e.preventDefault(), say(field.value)) }, field, el("button", { text: "Say it" }), el("span", { class: "note", text: ` ${q.allowed}` }))];
     return el("p", { "data-number": q.number, role: "group", "aria-label": `Question of ${q.party}` },
-      words, ...(this.hasJoined ? buttons.flatMap((b) => [b, " "]) : []), el("span", { class: "left" }));
+      words, ...(this.hasJoined ? buttons.flatMap((b) => [b, " "]) : []), el("span", { class: "left", "aria-live": "off" })); // not each second of it
   }
 }

@@ -3,7 +3,7 @@
 
 const MOST_LANES = 14;
 
-/** @typedef {{name: string, bars: any[], ticks: Float64Array | number[], steps: number[], party: number}} Lane */
+/** @typedef {{key: string, name: string, y: number, height: number, isFolded?: boolean, bars: any[], ticks: Float64Array | number[], steps: number[], party: number}} Lane */
 
 /**
  * @param {any} run
@@ -45,7 +45,7 @@ function partyLanes(run, course) {
   const steps = parties.map(() => []);
   for (let k = 1; k <= course.steps; k++) steps[owners[course.transition[k - 1]]].push(k);
   const lanes = parties.map((/** @type {any} */ p, /** @type {number} */ i) => ({
-    name: p.name, party: i, steps: steps[i], ticks: steps[i].map((/** @type {number} */ k) => course.time[k - 1]),
+    key: String(i), name: p.name, y: 0, height: 0, party: i, steps: steps[i], ticks: steps[i].map((/** @type {number} */ k) => course.time[k - 1]),
     bars: i === 0
       ? activities.map((/** @type {any} */ a) => ({ ...a, kind: "activity", label: a.name, transition: -1, party: 0 }))
       : bars.filter((/** @type {any} */ b) => b.party === i),
@@ -71,6 +71,6 @@ function pageLanes(run, course) {
   return busiest.sort((a, b) => a - b).map((at) => {
     const steps = found.get(at) ?? [];
     const path = run.net.instances[at]?.path.split("/").pop() ?? "net";
-    return { name: path, party: -1, bars: [], steps, ticks: steps.map((k) => course.time[k - 1]) };
+    return { key: String(at), name: path, y: 0, height: 0, party: -1, bars: [], steps, ticks: steps.map((k) => course.time[k - 1]) };
   });
 }

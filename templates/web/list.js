@@ -4,18 +4,22 @@
 import { el } from "./dom.js";
 
 const MOST_PIXELS = 8_000_000;
+/** So many letters are not cut in any pane. */
+const FITS = 12;
 
 export class LongList {
   /**
    * @param {HTMLElement} host
-   * @param {{label: string, count: number, height: number, row: (i: number) => HTMLElement, onRow: (i: number) => void}} rows
+   * @param {{label: string, count: number, height: number, row: (i: number) => HTMLElement, onRow: (i: number) => void, whole?: (i: number) => string}} rows
+   *   `whole`: what the row says, of which there may be room for a part only; it stands below then
    */
   constructor(host, rows) {
     this.rows = rows;
     this.current = -1;
     this.inner = el("ol", { class: "rows" });
     this.host = el("div", { class: "long", tabindex: "0", role: "listbox", "aria-label": rows.label }, this.inner);
-    host.append(this.host);
+    this.full = el("pre", { class: "full", tabindex: "0", role: "group", "aria-label": `${rows.label}: all of this one`, hidden: true });
+    host.append(this.host, this.full);
     this.host.addEventListener("scroll", () => this.paint());
     this.host.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
     new ResizeObserver(() => this.resized()).observe(this.host);
@@ -35,6 +39,7 @@ export class LongList {
   resized() {
     if (this.current >= 0) this.reveal();
     this.paint();
+    this.tellWhole();
   }
 
   /** @param {KeyboardEvent} e */
@@ -84,5 +89,14 @@ export class LongList {
       shown.push(item);
     }
     this.inner.replaceChildren(...shown);
+  }
+
+  /** All of the chosen row, where it is cut. */
+  tellWhole() {
+    const said = this.inner.querySelector("[aria-selected=true] .said");
+    const text = said && this.current >= 0 ? (this.rows.whole?.(this.current) ?? "") : "";
+    const isCut = text.length > FITS && (said.scrollWidth > said.clientWidth || text.length > said.textContent.length);
+    this.full.hidden = !isCut;
+    if (isCut && this.full.textContent !== text) this.full.textContent = text;
   }
 }

@@ -35,7 +35,9 @@ class LivePage extends ReplayPage {
   }
 
   /** The address keeps no moments: it is that of what happens now. */
-  address() {}
+  moment() {
+    return "";
+  }
 
   fromAddress() {
     return false;
@@ -51,6 +53,7 @@ class LivePage extends ReplayPage {
     const more = addTo(this.run, update);
     /** @type {LiveClock} */ (this.clock).grow(update.t);
     this.timeline.grow({ ...more, from });
+    this.widen();
     this.sides?.add(update.events);
     this.latest = { update, pages };
   }

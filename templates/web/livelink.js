@@ -4,6 +4,8 @@
 import { push } from "./course.js";
 
 const AGAIN_MS = 1000;
+/** The server says something every two seconds: after so long a silence it is not there, though nobody has closed anything. */
+const QUIET_MS = 7000;
 
 export class LiveLink {
   /** @param {{onNews: (updates: any[], pages: number) => void, onLost: () => void, onBack: () => void, onOver: () => void, onFailed: () => void, onSaid: (text: string) => void, onOpen: () => void, onAct: (text: string) => void}} ears */
@@ -13,7 +15,20 @@ export class LiveLink {
     this.at = 0;
     this.isOver = false;
     this.isLost = false;
+    /** It has said that it says nothing new. */
+    this.hasFailed = false;
+    this.heardAt = 0;
+    setInterval(() => this.listen(), AGAIN_MS);
     this.open();
+  }
+
+  /** A computer that sleeps, a cable that is pulled, a process that is held close no connection. */
+  listen() {
+    const { socket } = this;
+    if (this.isOver || this.isLost || this.hasFailed || !this.heardAt || performance.now() < this.heardAt + QUIET_MS || !socket) return;
+    socket.onclose = socket.onmessage = null;
+    socket.close();
+    this.closed();
   }
 
   open() {
@@ -36,6 +51,7 @@ export class LiveLink {
 
   /** @param {any} said */
   hear(said) {
+    this.heardAt = performance.now();
     if (said.updates) {
       if (this.isLost) this.ears.onBack();
       this.isLost = false;
@@ -45,6 +61,7 @@ export class LiveLink {
       this.isOver = true;
       this.ears.onOver();
     } else if (said.failed) {
+      this.hasFailed = true;
       this.ears.onFailed();
     } else if (said.broken) {
       this.isOver = true;

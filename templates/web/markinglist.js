@@ -1,7 +1,7 @@
 // @ts-check
 /** The marking of every place, with all tokens; a place can be changed. */
 
-import { el } from "./dom.js";
+import { el, reachedByKeys } from "./dom.js";
 import { field, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
@@ -33,6 +33,9 @@ export class MarkingList {
     this.filter = el("input", { type: "search", placeholder: "Place or token", "aria-label": "Places that are shown", oninput: () => this.update() });
     this.isFull = el("input", { type: "checkbox", onchange: () => this.update() });
     this.edit = el("section", { class: "chosen", hidden: true, "aria-label": "A place" });
+    this.edit.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => e.key === "Escape" && this.leave());
+    /** From where keys came to the place. @type {any} */
+    this.back = null;
     this.rows = el("ul", { class: "plain marking", "aria-label": "Marking" });
     host.append(el("header", {}, this.filter, el("label", {}, this.isFull, " empty places, too")), this.edit, this.rows);
   }
@@ -49,17 +52,30 @@ export class MarkingList {
       if (shown.length < MOST) shown.push(p);
       else left++;
     }
+    const focused = this.focused();
     this.rows.replaceChildren(...shown.map((p) => this.row(p)));
+    if (focused !== undefined) this.focus(focused);
     if (left) this.rows.append(el("li", { class: "note", text: `and ${left} more: type a part of a name` }));
     if (!shown.length) this.rows.append(el("li", { class: "note", text: word ? "No place has that name or token." : "All places are empty." }));
     if (this.chosen >= 0) this.head();
+  }
+
+  /** Of which place the row has the focus. @returns {string | undefined} */
+  focused() {
+    const { activeElement } = document;
+    return this.rows.contains(activeElement) ? /** @type {any} */ (activeElement).closest("li")?.dataset.place : undefined;
+  }
+
+  /** @param {string | number} p of its row, or, where it has none any more, what finds places */
+  focus(p) {
+    (this.rows.querySelector(`[data-place="${p}"] button`) ?? this.filter).focus({ preventScroll: true });
   }
 
   /** @param {number} p */
   row(p) {
     const place = this.position.net.places[p];
     const text = this.position.text(p);
-    return el("li", {},
+    return el("li", { "data-place": p },
       el("button", { class: "link", text: place.name, title: `of colour set ${place.colset}`, onclick: () => this.choose(p) }),
       el("span", { class: "count", text: this.position.counts[p].toLocaleString("en") }),
       el("pre", {
@@ -73,6 +89,7 @@ export class MarkingList {
    * @param {number} p
    */
   choose(p) {
+    const from = reachedByKeys();
     this.chosen = p;
     const place = this.position.net.places[p];
     this.whole = el("pre", { class: "whole", tabindex: "0", role: "group", "aria-label": `Tokens of ${place.short}` });
@@ -90,6 +107,16 @@ export class MarkingList {
     this.seen = -1;
     this.head();
     this.actions.show(p);
+    if (!from) return;
+    if (!this.edit.contains(from)) this.back = from;
+    this.change.input.focus();
+  }
+
+  leave() {
+    const p = this.chosen;
+    this.close();
+    if (this.back?.isConnected) this.back.focus();
+    else this.focus(p);
   }
 
   async head() {

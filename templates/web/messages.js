@@ -45,6 +45,7 @@ export class Messages {
         onMessage(this.messages[i]);
         this.list.go(i);
       },
+      whole: (i) => (clock.isPlaying ? "" : `${this.messages[i].channel} ${this.messages[i].text}`),
     });
     new ResizeObserver(() => this.fit(host)).observe(host);
   }
@@ -166,6 +167,7 @@ export class Messages {
   update() {
     const last = this.count() - 1;
     if (last !== this.list.current) this.list.go(last);
+    this.list.tellWhole();
   }
 }
 
@@ -179,6 +181,7 @@ export class Steps {
     this.list = new LongList(host, {
       label: "Steps", count: clock.course.steps, height: ROW, row: (i) => this.row(i),
       onRow: (i) => clock.step(i + 1),
+      whole: (i) => (clock.isPlaying ? "" : [clock.course.occurred(i + 1).short, ...clock.course.bound(i + 1).map((b) => b.join(" = "))].join("\n")),
     });
   }
 
@@ -203,5 +206,6 @@ export class Steps {
 
   update() {
     if (this.clock.k - 1 !== this.list.current) this.list.go(this.clock.k - 1);
+    this.list.tellWhole();
   }
 }

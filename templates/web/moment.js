@@ -9,7 +9,32 @@ const FEWEST = 3;
 const MOST = 9;
 const NUMBER = /^([+-]?(?:\d+(?:[.,](\d*))?|[.,](\d+))(?:e[+-]?\d+)?)\s*s?$/i;
 
+/** Hours, minutes and seconds; or the last two. */
+const CLOCK = /^(?:(\d+):)?(\d+):(\d+(?:[.,]\d*)?)$/;
+
 /** @typedef {import("./clock.js").Clock} Clock */
+
+/**
+ * A moment as hours, minutes and seconds.
+ * @param {number} t
+ */
+export function clockText(t) {
+  const two = (/** @type {number} */ n) => String(n).padStart(2, "0");
+  return `${Math.floor(t / 3600)}:${two(Math.floor(t / 60) % 60)}:${two(Math.floor(t) % 60)}`;
+}
+
+/**
+ * The same in seconds; what is no such moment stays as it is.
+ * @param {string} text
+ */
+function inSeconds(text) {
+  const found = CLOCK.exec(text);
+  if (!found) return text;
+  const [, hours = "0", minutes, seconds] = found;
+  const [whole, part] = seconds.split(/[.,]/);
+  const sum = 3600 * Number(hours) + 60 * Number(minutes) + Number(whole);
+  return part ? `${sum}.${part}` : String(sum);
+}
 
 export class Moments {
   /**
@@ -47,7 +72,7 @@ export class Moments {
    * @param {string} text
    */
   read(text) {
-    const [, number = "", whole = "", part = ""] = NUMBER.exec(text.trim()) ?? [];
+    const [, number = "", whole = "", part = ""] = NUMBER.exec(inSeconds(text.trim())) ?? [];
     if (!number) return NaN;
     const t = Number(number.replace(",", "."));
     if (this.clock.course.run.clock !== "seconds") return t;

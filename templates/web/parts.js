@@ -4,8 +4,8 @@
 import { el, shorten } from "./dom.js";
 
 /**
- * A field with a label and a button; Enter does what the button does.
- * @param {{label: string, placeholder?: string, button: string, rows?: number, title?: string, work: (text: string) => void}} how
+ * A field with a label and a button; Enter does what the button does, in several rows Ctrl-Enter, or Enter where a new row needs Shift.
+ * @param {{label: string, placeholder?: string, button: string, rows?: number, shiftForRow?: boolean, title?: string, work: (text: string) => void}} how
  */
 export function field(how) {
   const input = el(how.rows ? "textarea" : "input", {
@@ -13,7 +13,8 @@ export function field(how) {
   });
   const button = el("button", { text: how.button, title: how.title, onclick: () => how.work(input.value) });
   input.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => {
-    if (e.key !== "Enter" || (how.rows && !e.ctrlKey && !e.metaKey)) return;
+    const isRow = how.shiftForRow ? e.shiftKey : Boolean(how.rows);
+    if (e.key !== "Enter" || (isRow && !e.ctrlKey && !e.metaKey)) return;
     e.preventDefault();
     how.work(input.value);
   });

@@ -25,6 +25,7 @@ export class Past {
     this.length = -1;
     this.list = new LongList(host, {
       label: "Steps of the game", count: 1, height: HEIGHT, row: (i) => this.row(i), onRow: (i) => go(i + this.position.state.forgotten),
+      whole: (i) => this.whole(i),
     });
   }
 
@@ -40,6 +41,7 @@ export class Past {
     if (this.list.host.closest("[hidden]")) return;
     this.list.resize(state.length - state.forgotten + 1);
     this.list.go(state.position - state.forgotten);
+    this.list.tellWhole();
   }
 
   /** @param {number} i */
@@ -47,9 +49,8 @@ export class Past {
     const number = i + this.position.state.forgotten;
     if (i === 0) return el("div", { class: "message" }, el("span", { class: "when", text: "" }), el("span", { class: "said", text: "the beginning" }));
     const block = Math.floor((number - 1) / BLOCK);
-    const rows = this.blocks.get(block);
-    if (rows === undefined) this.fetch(block);
-    const entry = rows?.[(number - 1) % BLOCK] ?? this.position.entry(number);
+    if (!this.blocks.has(block)) this.fetch(block);
+    const entry = this.entry(number);
     const isLater = number > this.position.state.position;
     const said = entry ? this.position.words(entry) : "…";
     const binding = entry?.binding?.map((/** @type {string[]} */ b) => `${b[0]} = ${b[1].replace(/\s+/g, " ")}`).join(", ") ?? "";
@@ -68,5 +69,20 @@ export class Past {
     for (const row of answer.result.rows) rows[row.number - block * BLOCK] = row;
     this.blocks.set(block, rows);
     this.list.paint();
+    this.list.tellWhole();
+  }
+
+  /** @param {number} i */
+  whole(i) {
+    const entry = i ? this.entry(i + this.position.state.forgotten) : null;
+    return entry ? [this.position.words(entry), ...(entry.binding ?? []).map((/** @type {string[]} */ b) => b.join(" = "))].join("\n") : "";
+  }
+
+  /**
+   * What happened, if it has been fetched.
+   * @param {number} number from 1
+   */
+  entry(number) {
+    return this.blocks.get(Math.floor((number - 1) / BLOCK))?.[(number - 1) % BLOCK] ?? this.position.entry(number);
   }
 }

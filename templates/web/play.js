@@ -29,7 +29,8 @@ const KEYS = [
   ["B", "breakpoint at the selected transition"],
   ["S", "the state space around this marking"],
   ["F", "follow: turn to the page where things happen"],
-  ["1 … 9", "panels"],
+  ["1 … 9", "panels; Tab goes on in them"],
+  ["Esc", "in bindings or a place: back to where they were opened"],
   ["/", "find a transition or a place"],
   ["D, ?", "dark or light; this list"],
 ];
@@ -111,6 +112,16 @@ class Page {
     this.marking?.update();
     this.plots?.draw();
     this.past?.update();
+  }
+
+  /**
+   * Tab goes on in the panel, and space is still a step.
+   * @param {{name: string, body: any}} wanted
+   */
+  tabByKey({ name, body }) {
+    this.tab(name);
+    if (body.tabIndex < 0) body.tabIndex = -1;
+    body.focus({ preventScroll: true });
   }
 
   // --- what the server says ------------------------------------------------------------------
@@ -211,7 +222,7 @@ class Page {
     this.net.mark(t, -1);
     this.tab("Enabled");
     this.frame.pane("panels");
-    this.enabled?.list(t);
+    this.enabled?.enter(t);
   }
 
   /** @param {number} p */
@@ -275,7 +286,7 @@ class Page {
     };
     if (/^[1-9]$/.test(e.key)) {
       const wanted = this.tabs?.[Number(e.key) - 1];
-      if (wanted) this.tab(wanted.name);
+      if (wanted) this.tabByKey(wanted);
     } else if (keys[e.key]) keys[e.key]();
     else return;
     e.preventDefault();

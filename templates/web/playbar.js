@@ -103,6 +103,7 @@ export class PlayBar {
     this.isPlaying = !this.isPlaying;
     this.play.textContent = this.isPlaying ? "❚❚" : "▶▶";
     this.play.setAttribute("aria-pressed", String(this.isPlaying));
+    this.where.setAttribute("aria-live", this.isPlaying ? "off" : "polite"); // not each of fifty steps a second
     if (!this.isPlaying || this.isLooping) return;
     this.isLooping = true;
     while (this.isPlaying) {
@@ -167,6 +168,7 @@ export class PlayBar {
   /** @param {any} answer */
   ran(answer) {
     if (!answer.ok) {
+      this.busy.textContent = "";
       this.actions.said(answer);
       return;
     }
@@ -182,6 +184,7 @@ export class PlayBar {
     this.isBusy = on;
     this.stop.hidden = !on;
     this.run.disabled = on;
+    this.busy.setAttribute("aria-live", on ? "off" : "polite"); // how far it is changes several times a second
     if (on) this.busy.textContent = "running …";
   }
 

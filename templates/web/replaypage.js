@@ -6,11 +6,12 @@ import { CellView } from "./cellview.js";
 import { Clock } from "./clock.js";
 import { Code } from "./code.js";
 import { Course, loopOf } from "./course.js";
+import { Divider } from "./divider.js";
 import { byId, el, reachable } from "./dom.js";
 import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
 import { Messages, Steps } from "./messages.js";
-import { Moments } from "./moment.js";
+import { Moments, SHOWN } from "./moment.js";
 import { NetView } from "./netview.js";
 import { Search } from "./search.js";
 import { Timeline } from "./timeline.js";
@@ -21,6 +22,10 @@ import { Watch } from "./watch.js";
 /** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
 const PANES_MS = 200;
 const PICTURES = 3;
+/** An address is not written more often: browsers forbid it. */
+const LATER_MS = 250;
+/** Of a longer number (a time of a net may have thousands) only so much has room. */
+const MOST_DIGITS = 14;
 
 export class ReplayPage {
   /** @param {{runs: any[], differences: any, names: string[], generator: string, missing: string}} data */
@@ -45,10 +50,9 @@ export class ReplayPage {
     if (data.runs.length > 1) this.beside = new Beside(this, data.runs[1], data);
     else if (this.run.cell) this.cell = new CellView(byId("cell"), this.run, data.missing, { onArm: (r, t) => this.onArm(r, t) });
     this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
-      onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k),
+      onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k), onFold: () => this.arranged(),
     });
-    // All of the time is seen where that leaves enough room to the rest.
-    document.body.style.setProperty("--wanted", `${this.timeline.wanted()}px`);
+    this.divider = new Divider(/** @type {HTMLElement} */ (byId("timeline").parentElement), byId("transport"), byId("panels"), () => this.arranged());
     this.panels(actions);
     this.search = new Search(byId("search"), this.clock, actions);
     this.transport = new Transport(byId("transport"), this.clock, {
@@ -58,7 +62,10 @@ export class ReplayPage {
     });
     this.clock.listen(() => this.update());
     addEventListener("keydown", (e) => this.key(e));
-    addEventListener("hashchange", () => this.fromAddress());
+    addEventListener("hashchange", () => (this.arrange(), this.fromAddress()));
+    this.widen();
+    this.arrange();
+    this.arranged();
     this.fromAddress() || this.update();
   }
 
@@ -119,6 +126,7 @@ export class ReplayPage {
     }
     this.code?.update(true);
     this.watch?.update();
+    for (const panel of [this.messages, this.steps]) panel?.list.tellWhole();
   }
 
   /** @param {any} host */
@@ -215,6 +223,33 @@ export class ReplayPage {
     this.messages?.reveal(p);
   }
 
+  /** Moments of long runs have more digits: they get room. */
+  widen() {
+    const { end, course } = this.clock;
+    const digits = Math.max(end.toFixed(SHOWN).length, String(course.clock?.[course.steps - 1] ?? "").length);
+    document.body.style.setProperty("--digits", String(Math.min(digits, MOST_DIGITS)));
+  }
+
+  /** Rows of the time axis and its height, as the address says. */
+  arrange() {
+    const words = new URLSearchParams(location.hash.slice(1));
+    const [folded, share] = [words.get("fold"), Number(words.get("height"))];
+    if (folded !== null) this.timeline.folds.read(folded);
+    if (share) this.divider.set(share);
+  }
+
+  /** All of the time is seen where that leaves enough room to the rest. */
+  arranged() {
+    document.body.style.setProperty("--wanted", `${this.timeline.wanted()}px`);
+    if (this.transport) this.address();
+  }
+
+  /** What the address says of the time axis. */
+  arrangement() {
+    const words = { fold: this.timeline.folds.write(), height: this.divider?.share };
+    return Object.entries(words).filter(([, value]) => value).map(([name, value]) => `${name}=${value}`).join("&");
+  }
+
   /** To the step or the moment that the address names; what is neither leads nowhere. */
   fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
@@ -282,14 +317,20 @@ export class ReplayPage {
     if (!clock.isPlaying) this.address();
   }
 
-  /** The address of the moment, so that it can be sent to somebody. */
+  /** The address of the moment, so that it can be sent to somebody, with what is folded. */
   address() {
-    const { clock } = this;
-    const isAlone = clock.k === this.course.stepAt(clock.t);
-    const hash = this.run.clock === "seconds" && isAlone ? `#t=${this.written.write(clock.t)}` : `#step=${clock.k}`;
-    if (location.hash === hash || (!location.hash && clock.t === 0)) return;
+    const hash = [this.moment(), this.arrangement()].filter((x) => x).join("&");
     clearTimeout(this.later);
-    this.later = setTimeout(() => history.replaceState(null, "", hash), 250);
+    if (location.hash.slice(1) === hash) return;
+    this.later = setTimeout(() => history.replaceState(null, "", hash ? `#${hash}` : location.href.split("#")[0]), LATER_MS);
+  }
+
+  /** The moment as the address says it; nothing where nobody has gone anywhere yet. */
+  moment() {
+    const { clock } = this;
+    if (!location.hash && clock.t === 0) return "";
+    const isAlone = clock.k === this.course.stepAt(clock.t);
+    return this.run.clock === "seconds" && isAlone ? `t=${this.written.write(clock.t)}` : `step=${clock.k}`;
   }
 }
 

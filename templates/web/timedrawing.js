@@ -1,12 +1,18 @@
 // @ts-check
 /** What is seen of the time axis: lanes, messages, events, curves; above them what moves with the moment. */
 
-import { LABEL, drawChart, legendWidth } from "./charts.js";
+import { LABEL, NAME, drawChart, legendWidth } from "./charts.js";
 import { upperBound } from "./course.js";
 import { colour, fitting, shorten } from "./dom.js";
 
 /** Height of the axis (CSS pixels). */
 export const HEAD = 20;
+const FONT = "12px system-ui, sans-serif";
+/** Of names of lanes that are folded. */
+const SMALL = "10px system-ui, sans-serif";
+/** Between marks of an axis of minutes and hours (s), and the finest there is: nothing shows less. */
+const MINUTES = [60, 120, 300, 600, 1200, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
+const FINEST = 0.001;
 /** Where the axis begins: right of the names, if these leave two thirds of the width to it. */
 const NAMES = { least: 108, most: 260, all: 0.33 };
 
@@ -40,7 +46,7 @@ export function drawStill(view, w, h) {
   view.left = nameWidth(view, c, w);
   axis(view, c, w, h);
   view.divide();
-  view.lanes.forEach((lane, i) => drawLane(view, c, lane, HEAD + i * view.lane, w));
+  for (const lane of view.lanes) drawLane(view, c, lane, w);
   messages(view, c);
   for (const chart of view.curves) drawChart(c, view, chart, w);
   events(view, c, h);
@@ -53,8 +59,8 @@ export function drawStill(view, w, h) {
  * @param {number} w
  */
 function nameWidth(view, c, w) {
-  const names = view.lanes.map((lane) => c.measureText(lane.name).width);
-  const widest = Math.max(legendWidth(c, view.curves), ...names) + 16;
+  const names = view.lanes.map((lane) => c.measureText(lane.name).width + NAME);
+  const widest = Math.max(legendWidth(c, view.curves), ...names) + 8;
   return Math.max(Math.min(widest, NAMES.most, NAMES.all * w), NAMES.least);
 }
 
@@ -68,20 +74,31 @@ export function drawMoment(view, c, h) {
   const { t } = view.clock;
   c.strokeStyle = view.ink?.text ?? "";
   c.lineWidth = 1.5;
-  view.lanes.forEach((lane, i) => {
+  for (const lane of view.lanes) {
+    const inset = lane.isFolded ? 1.5 : 3.5;
     for (const bar of lane.bars) {
       if (bar.start > t || t >= bar.end || bar.kind === "activity") continue;
       const left = Math.max(view.x(bar.start), view.left);
       const width = Math.max(view.x(bar.end) - left, 1.5);
-      if (bar.end > view.from && bar.start < view.to) c.strokeRect(left, HEAD + i * view.lane + 3.5, width, view.lane - 7);
+      if (bar.end > view.from && bar.start < view.to) c.strokeRect(left, lane.y + inset, width, lane.height - 2 * inset);
     }
-  });
+  }
   c.strokeStyle = c.fillStyle = view.ink?.accent ?? "";
   c.lineWidth = 1;
   for (const m of view.run.happenings?.messages ?? []) {
     if (Math.abs(m.t - t) < 1e-6 && m.t >= view.from && m.t <= view.to) arrow(view, c, m, true);
   }
   cursor(view, c, h);
+}
+
+/**
+ * A moment of a long run.
+ * @param {number} t whole minutes in seconds
+ */
+function hours(t) {
+  const minutes = Math.round(t / 60);
+  const words = [[Math.floor(minutes / 60), "h"], [minutes % 60, "min"]].filter(([n]) => n);
+  return words.length ? words.map(([n, unit]) => `${n} ${unit}`).join(" ") : "0 s";
 }
 
 /**
@@ -94,7 +111,9 @@ function axis(view, c, w, h) {
   const wanted = (view.to - view.from) / Math.max((w - view.left) / 90, 1);
   const power = 10 ** Math.floor(Math.log10(wanted));
   const found = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
-  const step = view.run.clock === "seconds" ? found : Math.max(found, 1); // there is no half of a step
+  const isSeconds = view.run.clock === "seconds";
+  const long = isSeconds && wanted > 30 ? (MINUTES.find((s) => s >= wanted) ?? Math.ceil(wanted / 86400) * 86400) : 0;
+  const step = long || Math.max(found, isSeconds ? FINEST : 1); // there is no half of a step
   c.fillStyle = view.ink?.faint ?? "";
   c.strokeStyle = view.ink?.line ?? "";
   c.lineWidth = 1;
@@ -107,25 +126,28 @@ function axis(view, c, w, h) {
     c.moveTo(x, HEAD);
     c.lineTo(x, h);
     c.stroke();
-    const label = unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
+    const label = long ? hours(t) : unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
     c.fillText(label, Math.min(x, w - 6 - c.measureText(label).width / 2), HEAD / 2);
   }
+  c.textAlign = "right";
+  c.fillText(view.run.clock === "seconds" ? "" : "step", view.left - 16, HEAD / 2);
   c.textAlign = "left";
-  c.fillText(view.run.clock === "seconds" ? "" : "step", 8, HEAD / 2);
 }
 
 /**
  * @param {Timeline} view
  * @param {CanvasRenderingContext2D} c
  * @param {Lane} lane
- * @param {number} y
  * @param {number} w
  */
-function drawLane(view, c, lane, y, w) {
-  const LANE = view.lane;
+function drawLane(view, c, lane, w) {
+  const { y, height: LANE } = lane;
+  const inset = lane.isFolded ? 2 : 4;
   c.fillStyle = view.ink?.text ?? "";
   c.textAlign = "left";
-  c.fillText(fitting(c, lane.name, view.left - 12), 8, y + LANE / 2);
+  if (lane.isFolded) c.font = SMALL;
+  c.fillText(fitting(c, lane.name, view.left - NAME - 4), NAME, y + LANE / 2);
+  c.font = FONT;
   c.save();
   c.beginPath();
   c.rect(view.left, y, w - view.left, LANE);
@@ -139,16 +161,16 @@ function drawLane(view, c, lane, y, w) {
     if (bar.kind === "wait" && width > 3) {
       c.strokeStyle = c.fillStyle;
       c.lineWidth = 1.5;
-      c.strokeRect(x + 0.75, y + 4.75, width - 2.1, LANE - 9.5);
-    } else c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
+      c.strokeRect(x + 0.75, y + inset + 0.75, width - 2.1, LANE - 2 * inset - 1.5);
+    } else c.fillRect(x, y + inset, Math.max(width - 0.6, 1), LANE - 2 * inset);
     c.globalAlpha = 1;
     const over = texture(c, bar.kind);
     if (over && width > 3) {
       c.fillStyle = over;
-      c.fillRect(x, y + 4, width - 0.6, LANE - 8);
+      c.fillRect(x, y + inset, width - 0.6, LANE - 2 * inset);
     }
     const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
-    if (fits > 2) {
+    if (fits > 2 && !lane.isFolded) {
       c.fillStyle = bar.kind === "activity" || bar.kind === "wait" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
       const label = shorten(bar.label, fits);
       const at = Math.max(x, view.left) + 4;
@@ -161,7 +183,7 @@ function drawLane(view, c, lane, y, w) {
       c.fillText(label, at, y + LANE / 2);
     }
   }
-  ticks(view, c, lane, y);
+  ticks(view, c, lane);
   c.restore();
 }
 
@@ -195,18 +217,18 @@ function texture(c, kind) {
  * @param {Timeline} view
  * @param {CanvasRenderingContext2D} c
  * @param {Lane} lane
- * @param {number} y
  */
-function ticks(view, c, lane, y) {
-  const LANE = view.lane;
+function ticks(view, c, lane) {
+  const { y, height: LANE } = lane;
   c.fillStyle = view.ink?.text ?? "";
   const first = Math.max(upperBound(lane.ticks, view.from) - 1, 0);
   const last = upperBound(lane.ticks, view.to);
   const isBare = lane.bars.length === 0;
+  const high = lane.isFolded ? 2 : 4;
   let before = -1;
   for (let i = first; i < last; ) {
     const x = Math.round(view.x(lane.ticks[i]));
-    if (x !== before) c.fillRect(x, isBare ? y + 5 : y + LANE - 4, 1, isBare ? LANE - 10 : 4);
+    if (x !== before) c.fillRect(x, isBare ? y + LANE / 4 : y + LANE - high, 1, isBare ? LANE / 2 : high);
     before = x;
     i = Math.max(i + 1, upperBound(lane.ticks, view.time(x + 0.5)));
   }
@@ -235,17 +257,19 @@ function messages(view, c) {
  */
 function arrow(view, c, m, hasHead) {
   const x = Math.round(view.x(m.t)) + 0.5;
-  const [a, b] = [m.from, m.to].map((party) => HEAD + (party + 0.5) * view.lane);
+  const [a, b] = [m.from, m.to].map((party) => view.lanes[party].y + 0.5 * view.lanes[party].height);
   const down = b > a ? 1 : -1;
+  // Between the bars of both lanes.
+  const [start, end] = [m.from, m.to].map((party) => (view.lanes[party].isFolded ? 3 : 6));
   c.beginPath();
-  c.moveTo(x, a + down * 7);
-  c.lineTo(x, b - down * 8);
+  c.moveTo(x, a + down * (start + 1));
+  c.lineTo(x, b - down * (end + 2));
   c.stroke();
   if (!hasHead) return;
   c.beginPath();
-  c.moveTo(x, b - down * 6);
-  c.lineTo(x - 3, b - down * 11);
-  c.lineTo(x + 3, b - down * 11);
+  c.moveTo(x, b - down * end);
+  c.lineTo(x - 3, b - down * (end + 5));
+  c.lineTo(x + 3, b - down * (end + 5));
   c.fill();
 }
 
@@ -343,7 +367,7 @@ export function cleared(canvas, w, h) {
   const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   c.setTransform(ratio, 0, 0, ratio, 0, 0);
   c.clearRect(0, 0, w, h);
-  c.font = "12px system-ui, sans-serif";
+  c.font = FONT;
   c.textBaseline = "middle";
   return c;
 }

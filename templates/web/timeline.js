@@ -4,11 +4,14 @@
 import { charts, divideHeight, growCharts, lowestHeight } from "./charts.js";
 import { upperBound } from "./course.js";
 import { el } from "./dom.js";
+import { Folds } from "./folds.js";
 import { growLanes, lanesOf } from "./lanes.js";
 import { HEAD, cleared, drawMoment, drawStill } from "./timedrawing.js";
 
 const LOWEST_LANE = 20;
 const HIGHEST_LANE = 32;
+/** A lane that is folded is a strip without words; fingers still have to find it. */
+const FOLDED_LANE = matchMedia("(pointer: coarse)").matches ? 22 : 12;
 /** Of the wanted height, what is left above the drawing and below it. */
 const FRAME = 4;
 
@@ -20,7 +23,7 @@ export class Timeline {
    * @param {HTMLElement} host
    * @param {any} run
    * @param {Clock} clock
-   * @param {{onBar: (bar: any) => void, onStep: (k: number) => void}} actions
+   * @param {{onBar: (bar: any) => void, onStep: (k: number) => void, onFold?: () => void}} actions
    */
   constructor(host, run, clock, actions) {
     this.run = run;
@@ -48,7 +51,6 @@ export class Timeline {
     this.marks = [];
     this.from = 0;
     this.to = clock.end;
-    this.lane = LOWEST_LANE;
     /** Where the axis begins. */
     this.left = 0;
     /** @type {{x: number, y: number} | null} where the mouse is */
@@ -58,6 +60,7 @@ export class Timeline {
     /** @type {Lane[]} */
     this.lanes = lanesOf(run, clock.course);
     this.curves = charts(run);
+    this.folds = new Folds(host, { rows: () => [...this.lanes, ...this.curves], lanes: () => this.lanes, onFold: () => this.folded() });
     new ResizeObserver(() => this.paint()).observe(host);
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
     this.canvas.addEventListener("pointermove", (e) => this.point(e));
@@ -68,7 +71,19 @@ export class Timeline {
   }
 
   height() {
-    return HEAD + this.lanes.length * LOWEST_LANE + lowestHeight(this.curves) + 6;
+    return HEAD + this.lowestLanes() + lowestHeight(this.curves) + 6;
+  }
+
+  /** How high the lanes are at least. */
+  lowestLanes() {
+    return this.lanes.reduce((sum, lane) => sum + (lane.isFolded ? FOLDED_LANE : LOWEST_LANE), 0);
+  }
+
+  /** Rows have been folded, or are shown again. */
+  folded() {
+    this.drawn = "";
+    this.actions.onFold?.();
+    this.paint();
   }
 
   /** The height of a pane in which all is seen. */
@@ -79,20 +94,28 @@ export class Timeline {
   /** Lanes and curves share the height that there is. */
   divide() {
     const free = Math.max(this.host.clientHeight - FRAME, this.height()) - HEAD - 6;
-    const lanes = Math.max(this.lanes.length, 1);
+    const folded = this.lanes.filter((lane) => lane.isFolded).length;
+    const whole = Math.max(this.lanes.length - folded, 1);
     // What curves need at least is theirs: higher lanes would push the last chart out of the picture.
     const most = free - lowestHeight(this.curves);
-    const wanted = (this.curves.length ? Math.min(0.5 * free, most) : free) / lanes;
-    this.lane = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
-    const all = this.lanes.length * this.lane;
-    divideHeight(this.curves, HEAD + all, free - all);
+    const isShared = this.curves.some((chart) => !chart.isFolded);
+    const wanted = ((isShared ? Math.min(0.5 * free, most) : most) - folded * FOLDED_LANE) / whole;
+    const high = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
+    let y = HEAD;
+    for (const lane of this.lanes) {
+      lane.y = y;
+      lane.height = lane.isFolded ? FOLDED_LANE : high;
+      y += lane.height;
+    }
+    divideHeight(this.curves, y, free - (y - HEAD));
+    this.folds.place(this.left, HEAD);
   }
 
   /** Names what is below the fold. */
   tellBelow() {
     const { scrollTop, clientHeight, scrollHeight } = this.host;
     const fold = scrollTop + clientHeight;
-    const lanes = this.lanes.filter((_, i) => HEAD + (i + 0.5) * this.lane > fold).length;
+    const lanes = this.lanes.filter(({ y, height }) => y + 0.5 * height > fold).length;
     const names = [lanes ? `${lanes} more lane${lanes === 1 ? "" : "s"}` : "", ...this.curves.filter((c) => c.y + c.height > fold + 4).map((c) => c.title)];
     const said = scrollHeight > clientHeight + 2 ? names.filter((x) => x).join(", ") : "";
     this.below.hidden = !said;
@@ -223,13 +246,18 @@ export class Timeline {
     this.paint();
   }
 
+  /** @param {number} y */
+  laneAt(y) {
+    return this.lanes.find((lane) => lane.y <= y && y < lane.y + lane.height);
+  }
+
   /**
    * @param {number} x
    * @param {number} y
    */
   barAt(x, y) {
-    const lane = this.lanes[Math.floor((y - HEAD) / this.lane)];
-    if (!lane || y < HEAD) return null;
+    const lane = this.laneAt(y);
+    if (!lane) return null;
     const t = this.time(x);
     const inside = lane.bars.find((b) => b.start <= t && t < b.end);
     if (inside) return inside;
@@ -256,7 +284,7 @@ export class Timeline {
    * @param {number} y
    */
   tip(x, y) {
-    if (x < this.left) return this.lanes[Math.floor((y - HEAD) / this.lane)]?.name ?? "";
+    if (x < this.left) return this.laneAt(y)?.name ?? "";
     const bar = this.barAt(x, y);
     if (bar) {
       const t = this.run.net.transitions[bar.transition];

@@ -3,7 +3,7 @@
 
 import { FASTEST, SLOWEST } from "./clock.js";
 import { el } from "./dom.js";
-import { SHOWN } from "./moment.js";
+import { SHOWN, clockText } from "./moment.js";
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -23,6 +23,9 @@ const KEYS = [
   ["D", "dark or light"],
   ["?", "this list"],
 ];
+
+/** Of a longer run (s) moments have hours and minutes, too. */
+const LONG = 600;
 
 export class Transport {
   /**
@@ -92,6 +95,7 @@ export class Transport {
     this.play.setAttribute("aria-label", clock.isPlaying ? "Pause (space)" : "Play (space)");
     this.slider.value = String((clock.t / clock.end) * 1000);
     if (document.activeElement !== this.time) this.time.value = this.shown();
+    if (isSeconds && clock.end >= LONG) this.time.title = clockText(clock.t);
     this.of.textContent = isSeconds ? ` / ${clock.end.toFixed(SHOWN)} s` : ` / ${clock.course.steps.toLocaleString("en")}`;
     const model = clock.course.clock && clock.k ? `time ${clock.course.clock[clock.k - 1]}` : "";
     this.step.textContent = isSeconds ? `step ${clock.k} / ${clock.course.steps}` : model;

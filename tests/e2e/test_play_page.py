@@ -177,7 +177,7 @@ class TestPlaying:
         browser.page.get_by_role("tab", name="Evaluate").click()
         field = browser.page.get_by_label("Expression in CPN ML")
         field.fill("length (Mark.Table'Forks 1)")
-        field.press("Control+Enter")
+        field.press("Enter")
         found = browser.page.get_by_text("3 : int", exact=True)
         found.wait_for()
         assert found.count() == 1
@@ -267,6 +267,50 @@ class TestPlaying:
         assert panel.evaluate("(e) => e === document.activeElement && e.tabIndex === 0")
         browser.page.get_by_role("tab", name="Steps", exact=True).click()
         assert browser.page.get_by_role("tabpanel").evaluate("(e) => e.tabIndex") == -1
+
+    def test_keys_stay_with_bindings_and_go_back(self, browser: Page) -> None:
+        """What is opened by keys gets them, they stay while bindings come and go, and Escape takes them back."""
+        keys = browser.page.keyboard
+        focus = "() => document.activeElement.closest('ul, section, g, .panel')?.getAttribute('aria-label')"
+        browser.page.locator(".sheet .enabled").first.focus()
+        where = browser.ask(focus)
+        keys.press("Shift+Enter")
+        browser.wait("document.activeElement.closest('.bindings')")
+        keys.press("Enter")
+        at(browser, 1)
+        browser.wait("document.activeElement.closest('.chosen')")
+        keys.press("Escape")
+        assert browser.page.locator(".chosen").first.is_hidden()
+        assert browser.ask(focus) == where
+        keys.press("2")
+        keys.press("Space")
+        at(browser, 2)
+        keys.press("Tab")
+        assert browser.ask(focus) == "Marking"
+        row = browser.page.get_by_role("list", name="Marking").get_by_role("button").first
+        row.focus()
+        keys.press("Enter")
+        assert browser.ask("() => document.activeElement.tagName") == "TEXTAREA"
+        keys.press("Escape")
+        assert browser.ask(focus) == "Marking"
+
+    def test_what_changes_many_times_a_second_is_not_told_each_time(self, browser: Page) -> None:
+        where = browser.page.locator("#transport [aria-live]").first
+        assert where.get_attribute("aria-live") == "polite"
+        browser.page.keyboard.press("p")
+        assert where.get_attribute("aria-live") == "off"
+        browser.page.keyboard.press("p")
+        assert where.get_attribute("aria-live") == "polite"
+
+    def test_a_run_that_cannot_begin_is_over(self, browser: Page) -> None:
+        """Not *running …* for ever."""
+        browser.page.keyboard.press("r")
+        browser.page.get_by_role("textbox", name="Until this is true, in CPN ML").fill(
+            "nothing > 2"
+        )
+        browser.page.keyboard.press("Enter")
+        browser.wait("document.getElementById('said').textContent.includes('not declared')")
+        assert browser.page.locator("#transport [role=status]").text_content() == ""
 
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:
         browser.page.keyboard.press("Space")

@@ -146,7 +146,7 @@ class TestRivetingCell:
         middle = (action.start + action.end) / 2
         at = browser.ask(
             "([t, p]) => { const l = replay.page.timeline; const b = l.canvas.getBoundingClientRect();"
-            " return [b.x + l.x(t), b.y + 20 + (p + 0.5) * l.lane]; }",
+            " return [b.x + l.x(t), b.y + l.lanes[p].y + 0.5 * l.lanes[p].height]; }",
             [middle, party],
         )
         browser.ask("() => replay.seek(0)")
@@ -214,7 +214,8 @@ class TestRivetingCell:
 
     def test_an_activity_leads_to_the_transition_with_which_it_begins(self, browser: Page) -> None:
         where = """() => { const l = replay.page.timeline; l.whole(); replay.seek(0);
-            const b = l.canvas.getBoundingClientRect(); return [b.x + l.x(50), b.y + 20 + 0.5 * l.lane]; }"""
+            const b = l.canvas.getBoundingClientRect(); const [{ y, height }] = l.lanes;
+            return [b.x + l.x(50), b.y + y + 0.5 * height]; }"""
         browser.page.mouse.click(*browser.ask(where))
         browser.settled()
         name = "() => replay.page.course.net.transitions[replay.page.transition].name"
@@ -964,7 +965,7 @@ def test_curves_are_seen_below_the_lanes_or_named_where_they_are_not(
         room, below = browser.ask(seen)
         assert room < 0 and below == "▾ clearance [mm], conditioning"
         assert complaints(browser) == []
-        browser.page.get_by_role("button", name="conditioning").click()
+        browser.page.locator(".below").click()
         browser.wait("replay.page.timeline.below.hidden")
         assert browser.ask(seen)[0] >= 0
         assert browser.errors == []

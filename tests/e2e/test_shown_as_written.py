@@ -57,8 +57,14 @@ def test_a_moment_typed_as_it_is_shown_has_what_is_shown_there(
     file = tmp_path / "replay.html"
     file.write_text(page(run), encoding="utf-8")
     steps = {f"{k / 3:.2f}": k for k in range(1, 31)}
-    moments = {"3.333": 10 * (1 / 3), "3.3330": 3.333, "7.12": 7.1239, "3,5 s": 3.5}
-    nothing = ["abc", "", "1:05", "Infinity", "3,5,1"]
+    moments = {
+        "3.333": 10 * (1 / 3),
+        "3.3330": 3.333,
+        "0:07.12": 7.1239,
+        "7.12": 7.1239,
+        "3,5 s": 3.5,
+    }
+    nothing = ["abc", "", "1:05:", ":05", "Infinity", "3,5,1"]
     addresses = {"#t=6,5": 19, "#t=4.67": 14, "#t=": 14, "#t=x": 14, "#step=": 14, "#step=x": 14}
     with opened(chromium) as browser:
         browser.open(file)

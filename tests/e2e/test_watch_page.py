@@ -79,6 +79,11 @@ def test_a_cell_is_seen_from_before_its_start_to_after_its_end(
         played.placed(1)
         page.get_by_text("The connection is lost").wait_for(state="hidden")
         browser.wait("live.page.course.steps === 5")
+        # Nobody closes it, but nobody speaks either.
+        served.process.signal(signal.SIGSTOP)
+        page.get_by_text("The connection is lost").wait_for()
+        served.process.signal(signal.SIGCONT)
+        page.get_by_text("The connection is lost").wait_for(state="hidden")
         assert HOSTILE in browser.ask(
             "() => JSON.stringify(live.page.run.net.transitions.map(t => t.name))"
         )

@@ -40,6 +40,8 @@ PREPARING = (
 PATIENCE_S = 2.0
 """A page that is asked for before it is there waits so long."""
 _LOOK_S = 0.1
+BEAT_S = 2.0
+"""After a silence of so long a page is told that the server is there (`QUIET_MS` in livelink.js)."""
 _CLOSED = (
     f"default-src 'none'; script-src {hashed(_AGAIN)}; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'"
@@ -164,7 +166,11 @@ class _Desk:
 
     async def _tell(self, socket: WebSocket, at: int) -> None:
         while True:
-            rows, at = await self._hall.after(at)
+            try:
+                rows, at = await asyncio.wait_for(self._hall.after(at), BEAT_S)
+            except TimeoutError:
+                await socket.send_text('{"alive":true}')
+                continue
             if not rows and self._hall.has_failed and not self._hall.is_over:
                 await socket.send_text(page_json({"failed": True}))
                 await self._hall.ended()

@@ -132,6 +132,8 @@ class Watching:
         self._is_from_start = self._looked and are_first
         self._is_running = seen.sides[self._parties[0]].state is Life.RUNS
         self._began = seen.began
+        # As journals count: whoever sets the clock later does not move what has happened.
+        self._since = seen.began - (time.time() - time.monotonic())
         self._watched = self._begun(seen.session)
         self._ended_at, self._is_told = None, False
         return True
@@ -149,7 +151,7 @@ class Watching:
 
     def _time(self) -> float:
         """Seconds since the session began; 0 where nobody knows: then the traces say it."""
-        return max(time.time() - self._began, 0.0) if self._is_running else 0.0
+        return max(time.monotonic() - self._since, 0.0) if self._is_running else 0.0
 
     def _tell(self, watched: Watched, seen: Seen, t: float) -> Iterator[Json]:
         now = time.monotonic()

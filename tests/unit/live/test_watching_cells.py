@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -269,6 +270,22 @@ def test_sides_that_die_and_a_cell_that_starts_again(
     watch.until(lambda u: watch.steps == ["Order"])
     again.end(Status.STOPPED, "robot.tdl:3: <b>no</b>")
     assert watch.ended() == {"word": "stopped", "reason": "robot.tdl:3: <b>no</b>", "final": []}
+
+
+def test_a_clock_that_is_set_back_does_not_turn_back_the_run(
+    watch: Watch, cell: WatchedCell, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Steps that were inferred after it had earlier times than those before, and the page was in disorder."""
+    played = Played(folder, cell, "supervisor")
+    played.order(1)
+    before = watch.until(lambda u: watch.steps == ["Order"])["t"]
+    wall = time.time
+    monkeypatch.setattr(time, "time", lambda: wall() - 3600.0)
+    played.accept(1)
+    played.report(1)
+    played.placed(1)
+    after = watch.until(lambda u: watch.steps[-1] == "Placed")["t"]
+    assert before <= after < before + 600.0
 
 
 def test_a_folder_that_vanishes(watch: Watch, cell: WatchedCell, folder: Path) -> None:

@@ -9,6 +9,7 @@ from helpers.ml import Ml, shown, source
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.library.builtins import INFIX
 from pn2code.ml.parsing import syntax as s
+from pn2code.ml.parsing.advice import missing_operand
 from pn2code.ml.parsing.fixity import resolve_declaration, resolve_expression
 from pn2code.ml.parsing.lexer import insert_delay_parentheses, tokenize
 from pn2code.ml.parsing.parser import declared_names, parse_code, parse_expression, parse_program
@@ -399,3 +400,8 @@ def test_what_sml_does_not_read(text: str) -> None:
     for dec in program or ():
         resolve_declaration(dec, INFIX, d)
     assert d.has_errors
+
+
+def test_a_name_that_is_an_operator_is_told() -> None:
+    assert "another name" in missing_operand("o", "left")
+    assert "another name" not in missing_operand("++", "left")

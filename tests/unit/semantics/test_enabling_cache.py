@@ -100,3 +100,23 @@ def test_a_membership_test_of_a_subset_that_raises_is_an_error_of_the_net() -> N
         """)
     with pytest.raises(GameError, match="the colour set of `k` raised the exception `Div`"):
         Game(net).enabled()
+
+
+def test_a_full_place_is_not_copied_for_each_binding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Among 10,000 tokens a step took ten times as long: with each of the bindings the place was copied."""
+    net = """
+        net Full
+          standard
+          var n, m : INT;
+          page Top
+            place A : INT = List.tabulate (50, fn i => i)
+            place B : INT = 1`1 ++ 2`7
+            trans T guard [m = n]
+              in A : n
+              in A : m + 1
+              in B : 7
+    """
+    game = Game(flat(net), seed=1)
+    found = len(game.enabled())
+    monkeypatch.delattr(Enabling, "take")
+    assert found == len(Game(flat(net), seed=1).enabled()) > 0

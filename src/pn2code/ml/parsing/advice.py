@@ -237,6 +237,8 @@ def missing_operand(operator: str, side: str) -> str:
             if side == "right"
             else "the delayed token is missing"
         )
+    if operator.isalpha():
+        return f"`{operator}` is an operator between two values; a variable or function needs another name"
     return f"write what is missing on the {side} of `{operator}`"
 
 

@@ -469,14 +469,29 @@ class Enabling:
             demands = [d for arc, term in terms for d in self._term_demands(t, arc, term, found)]
         except NoMatchError:
             return False
-        return isinstance(self.take(marking, demands), Marking)
+        return self._holds(marking, demands)
+
+    def _holds(self, marking: Marking, demands: list[Demand]) -> bool:
+        """Whether `take` has a marking for them. Untimed tokens are counted only: a copy of a full place costs more."""
+        wanted: dict[tuple[int, Value], int] = {}
+        for demand in demands:
+            if not isinstance(marking.places[demand.place], MultiSet):
+                return isinstance(self.take(marking, demands), Marking)
+            key = demand.place, demand.value
+            wanted[key] = wanted.get(key, 0) + demand.count
+        for (place, value), count in wanted.items():
+            tokens = marking.places[place]
+            assert isinstance(tokens, MultiSet)
+            if tokens.counts.get(value, 0) < count:
+                return False
+        return True
 
     def _is_held(self, t: FlatTransition, marking: Marking, binding: Binding) -> bool:
         """Whether all places hold what the transition wants; one that does not ends the question."""
         wants = self._wanted(t)
         if wants.together:
             try:
-                return isinstance(self.take(marking, self.demands(t, binding)), Marking)
+                return self._holds(marking, self.demands(t, binding))
             except NoMatchError:
                 return False
         found = {s.uid: value for s, value in binding.items()}
