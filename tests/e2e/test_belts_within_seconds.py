@@ -33,7 +33,7 @@ def within(cell: Path, seconds: float, code: int) -> dict[str, Any]:
 
 def soon(folder: Path, seconds: float, toml: str = belt_cell.TOML) -> dict[str, Any]:
     belt_cell.belt_cell(folder, toml=toml + PROPERTY.format(seconds))
-    done = CliRunner().invoke(app, ["verify", str(folder), "--durations", "--json"])
+    done = CliRunner().invoke(app, ["verify", str(folder), "--durations", "--no-medium", "--json"])
     found = json.loads(done.stdout)
     (said,) = (x for x in found["properties"] if x["name"] == "soon")
     return dict(said)
@@ -97,7 +97,7 @@ def test_an_answer_that_a_belt_may_make_late_is_no_yes(tmp_path: Path) -> None:
     """It was: in time, with a latest answer far beyond the limit. A run stopped there."""
     toml = belt_cell.TOML.replace('["Finished"]', '["Finished"]\nreply_timeout_s = 20', 1)
     cell = belt_cell.belt_cell(tmp_path / "cell", toml=toml.replace("speed = 0.25", "speed = 0.02"))
-    done = CliRunner().invoke(app, ["verify", str(cell), "--durations", "--json"])
+    done = CliRunner().invoke(app, ["verify", str(cell), "--durations", "--no-medium", "--json"])
     assert done.exit_code == 3, done.output
     found = json.loads(done.stdout)
     (check,) = (x for x in found["controller"] if x["check"] == "in-time")

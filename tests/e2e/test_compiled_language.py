@@ -18,7 +18,7 @@ from helpers.thorough import amount
 pytestmark = pytest.mark.cc
 
 
-@pytest.mark.parametrize("name", [*PROGRAMS][:: amount(2, 1)])
+@pytest.mark.parametrize("name", [*PROGRAMS][:: amount(3, 1)])
 def test_programs(name: str, workshop: Workshop, tmp_path: Path) -> None:
     net = flat(net_of(*PROGRAMS[name]))
     compiled, d = lowered(net)

@@ -25,6 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BLOCKS = [block for path in documents(ROOT) for block in blocks(path, ROOT)]
 
 CELLS = "test_example_cells does the same"
+LIKE_MINIMAL = "the same with the minimal cell is typed in each run of the tests"
 LIKE_SORTING = "the same with the sorting cell is typed in each run of the tests"
 OTHERS = (
     "assembly",
@@ -43,6 +44,8 @@ LONG = {
     "pn2code run examples/riveting": "the same",
     "pn2code run examples/riveting --layout good --backend fake": "test_run_cell does the same",
     "pn2code run examples/minimal --backend fake --cycles 10": "test_many_cycles runs a smaller cell",
+    "pn2code run examples/minimal -o run": "PyBullet with pictures; test_run_cell does it with the riveting cell",
+    "pn2code verify pick": LIKE_MINIMAL,
     "pn2code run examples/palletiser": "PyBullet with pictures; test_carrying does it with a smaller cell",
     "pn2code contest DIR ReachabilityFireability": "test_contest_command does the same",
     "pn2code conform cell.toml --generated DIR": "test_conform does the same",
@@ -238,6 +241,14 @@ def with_input(desk: Desk) -> None:
     )
 
 
+def with_run(desk: Desk) -> None:
+    """The folder of a run is there, but where all lines are typed, one of which makes it."""
+    if not THOROUGH:
+        quick = ("--backend", "fake", "--no-pictures")
+        done = pn2code("run", ROOT / "examples/minimal", *quick, "-o", desk.project / "run")
+        assert done.returncode == 0, done.stderr
+
+
 def with_properties(desk: Desk) -> None:
     """net.cpn has files with properties beside it."""
     for name in ("net.properties.toml", "other.toml"):
@@ -259,6 +270,7 @@ PLACES: dict[str, Callable[[Desk], None]] = {
     "docs/contest.md": with_input,
     "docs/execution.md": in_folder("generated/riveting"),
     "docs/properties.md": with_properties,
+    "docs/replay.md": with_run,
     "docs/text.md": with_text,
     "examples/philosophers/README.md": in_folder("examples/philosophers"),
 }

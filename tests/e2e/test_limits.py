@@ -34,7 +34,7 @@ def impatient() -> None:
     """The same, and an initial marking is given up after fewer steps."""
     bounded()
     assert token_game.AT_START.steps is not None
-    token_game.AT_START = Limits(steps=token_game.AT_START.steps // 20)
+    token_game.AT_START = Limits(steps=token_game.AT_START.steps // 40)
 
 
 def pn2code(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -136,7 +136,7 @@ def test_an_endless_loop_in_an_initial_marking_is_given_up(tmp_path: Path) -> No
     path.write_bytes(cpn("net Endless\n  standard\n  place P : INT = (while true do (); 1)\n"))
     done = processes.pn2code("marking", path, prepare=impatient)
     assert done.returncode == 1
-    assert "no end after 500000 steps" in done.stdout + done.stderr
+    assert "no end after 250000 steps" in done.stdout + done.stderr
     assert "initial marking" in done.stdout + done.stderr
 
 

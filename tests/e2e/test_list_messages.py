@@ -115,7 +115,7 @@ def test_lists_of_lists_are_refused(tmp_path: Path) -> None:
     assert cpn(net)
 
 
-@pytest.mark.parametrize("seed", range(amount(2, 40)))
+@pytest.mark.parametrize("seed", range(amount(1, 40)))
 def test_what_is_verified_of_random_cells_runs(seed: int, tmp_path: Path) -> None:
     """Cells that pass lists of all kinds on and back: what comes back is what was sent."""
     net, toml, rounds = random_lists.cell(Random(seed))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from e2e.test_check_geometry import looked
-from helpers.carrying_cell import TOML, write
+from helpers.carrying_cell import NET, TOML, write
 from helpers.processes import pn2code
 from unit.robot.test_convex_pieces import trough
 
@@ -24,7 +24,8 @@ MESH = (
 @pytest.mark.parametrize("hulls", [1, 4])
 def test_reaching_into_a_trough(hulls: int, tmp_path: Path) -> None:
     assert TOML.count(TABLE) == 1
-    cell = write(tmp_path / "cell", toml=TOML.replace(TABLE, MESH.format(hulls)))
+    one = NET.replace("val parts = 2;", "val parts = 1;")
+    cell = write(tmp_path / "cell", net=one, toml=TOML.replace(TABLE, MESH.format(hulls)))
     trough(cell, top=0.7)
     found = looked(cell, tmp_path / "looked")
     ran = pn2code(

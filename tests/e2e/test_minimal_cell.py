@@ -46,7 +46,7 @@ def test_parts_too_far_apart(root: Path, tmp_path: Path) -> None:
     assert net.count("150.0 *") == 2  # the declaration, and its text
     (tmp_path / "cell.cpn").write_text(net.replace("150.0 *", "400.0 *"))
     (tmp_path / "cell.toml").write_text((folder / "cell.toml").read_text())
-    done = pn2code("verify", tmp_path)
+    done = pn2code("verify", tmp_path, "--no-medium")
     assert done.returncode == 1
     assert "NO Poses within reach: 12 steps after the start" in done.stdout
 

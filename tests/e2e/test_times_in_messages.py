@@ -106,7 +106,7 @@ def test_a_time_goes_to_a_device_and_back(net: str, at: float, tmp_path: Path) -
     assert lines[-1]["why"] == "finished"
     if net != NET:
         return  # of a real clock not all moments at which something may happen late can be tried out
-    options = ["--json", "--threads", "1", "--traces", str(tmp_path)]
+    options = ["--json", "--no-medium", "--threads", "1", "--traces", str(tmp_path)]
     done = CliRunner().invoke(app, ["verify", str(cell), *options])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)

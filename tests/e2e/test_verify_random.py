@@ -20,7 +20,7 @@ from helpers.unions import PER_UNION, Outcome, alone, check
 
 pytestmark = pytest.mark.cc
 
-NETS = amount(12, 400)
+NETS = amount(8, 400)
 UNIONS = amount(4, 600)
 GROUPS = 12
 """As many as there are styles, with and without priorities."""

@@ -38,7 +38,7 @@ def test_a_deadlock_is_told_by_what_was_drawn(tmp_path: Path) -> None:
     net.write_text(
         net.read_text().replace("  place Finished\n", "  place Finished\n  place GivenUp\n")
     )
-    done = CliRunner().invoke(app, ["verify", str(cell)])
+    done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium"])
     assert done.exit_code == 1, done.output
     said = " ".join(done.output.split())
     end = said[said.index("After that nothing can occur:") : said.index("`--full` prints")]
@@ -52,7 +52,7 @@ def test_a_deadlock_is_told_by_what_was_drawn(tmp_path: Path) -> None:
 def test_what_nobody_has_drawn_is_not_said_to_be_dead(tmp_path: Path) -> None:
     """Each reader has taken a value before the next one is set, so that none is told again."""
     cell = register_pairs.write(tmp_path / "cell", register_pairs.TOLD)
-    done = CliRunner().invoke(app, ["verify", str(cell)])
+    done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium"])
     assert done.exit_code == 0, done.output
     assert "Dead transitions" in done.output and "Supervisor'Again_limit" in done.output
     assert "never occur in the cell" not in done.output

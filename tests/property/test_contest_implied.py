@@ -12,6 +12,7 @@ import pytest
 from helpers.examined import fireable, truths
 from helpers.random_coloured import random_coloured
 from helpers.random_tables import Graph, random_tables, restless_tables, sparse_tables
+from helpers.thorough import amount
 from pn2code.contest.examinations import Asked, Part, asked
 from pn2code.contest.formulas import Op
 from pn2code.contest.implied import Implied
@@ -65,7 +66,7 @@ FAMILIES = (rings, joined, sparse_tables, random_tables, restless_tables, colour
 def test_what_is_implied(family: Callable[[random.Random], Tables]) -> None:
     """What is asked is as true as all; without dead markings a net is live if each transition implies all."""
     less = one = live = 0
-    for seed in range(150):
+    for seed in range(amount(40, 150)):
         tables = family(random.Random(seed))
         graph = Graph.of(tables, MOST)
         if graph is None:

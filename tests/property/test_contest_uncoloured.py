@@ -18,6 +18,7 @@ from helpers.examined import examined
 from helpers.random_coloured import random_coloured
 from helpers.random_linear import holds
 from helpers.random_tables import Graph, random_condition
+from helpers.thorough import amount
 from pn2code.base.deadline import Deadline
 from pn2code.contest.asking import Asking, is_large
 from pn2code.contest.engine import Answer, Said, engine
@@ -107,7 +108,7 @@ def test_no_answer_is_wrong(program: Path, family: str, tmp_path: Path) -> None:
 def test_runs_decide_formulas_of_one_operator(tmp_path: Path) -> None:
     """With dead initial markings among the nets: nothing comes after these, in linear time they themselves."""
     decided, dead = 0, 0
-    for seed in range(24):
+    for seed in range(amount(12, 24)):
         draw = random.Random(seed)
         made = random_coloured(draw)
         graph = Graph.of(made.tables(), 60)

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Literal, assert_never
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -52,6 +53,8 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
+_MOVED: WeakKeyDictionary[Trajectory, Array] = WeakKeyDictionary()
+"""What `moved` has worked out."""
 MotionKind = Literal["ptp", "lin", "circ", "blend", "axis", "tool", "measure", "wait"]
 _OWN = np.eye(4)
 _STILL = 1e-9  # rad: a turntable that turns by less stands
@@ -114,8 +117,17 @@ def turned_by(
     tables = {robot.index(axis.name): axis.name for axis in axes}
     if not tables:
         return frozenset()
-    off = np.abs(path.q(path.duration) - path.q(0.0))
+    off = np.abs(moved(path))
     return frozenset(f"{robot.name}/{name}" for i, name in tables.items() if off[i] > _STILL)
+
+
+def moved(path: Trajectory) -> Array:
+    """How far a trajectory moves each axis; of one whose ends are poses it is worked out once, not at each look."""
+    if not isinstance(path, LinearTrajectory | AlongTrajectory):
+        return np.asarray(path.q(path.duration) - path.q(0.0))
+    if path not in _MOVED:
+        _MOVED[path] = np.asarray(path.q(path.duration) - path.q(0.0))
+    return _MOVED[path]
 
 
 class RobotExecutor:

@@ -526,18 +526,13 @@ class Engine:
     def _sample(self, t: float, joints: Mapping[str, Array]) -> None:
         """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
         kinds = {r.name: r.motion.kind for r in self.robots if r.motion is not None}
-        calm = [
-            r.name
+        turns = {
+            r.name: turned(r.arm.robot, r.motion)
             for r in self.robots
-            if r.motion is not None and r.arm is not None and not turned(r.arm.robot, r.motion)
-        ]
-        turning = frozenset[str]().union(
-            *(
-                turned(r.arm.robot, r.motion)
-                for r in self.robots
-                if r.motion is not None and r.arm is not None
-            )
-        )
+            if r.motion is not None and r.arm is not None
+        }
+        calm = [name for name, plates in turns.items() if not plates]
+        turning = frozenset[str]().union(*turns.values())
         verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning)
         self.record.sample(verdict)
         for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):

@@ -9,7 +9,7 @@ from pn2code.ml import library
 from pn2code.ml.parsing.lexer import MAX_TOKENS
 from pn2code.ml.typing.inference import MAX_WORK
 
-N = 3000
+N = 1500
 
 
 def codes_of(text: str) -> list[str]:

@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 
+from helpers.thorough import amount
 from pn2code.properties import meaning as m
 from pn2code.properties.silent import means_the_same
 
@@ -75,7 +76,7 @@ def paths(r: Random) -> tuple[list[Place], list[Place]]:
     return own, more
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(amount(6, 20)))
 def test_what_is_said_with_silent_steps_is_true_without_them(seed: int) -> None:
     r = Random(seed)
     for _ in range(300):

@@ -29,7 +29,7 @@ from pn2code.robot.commands import (
     MoveJoint,
     MoveLinear,
 )
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import Motion, RobotExecutor, turned
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
@@ -315,6 +315,27 @@ def test_axes_that_cannot_be(data: dict[str, Any], message: str) -> None:
     found, d = loaded(data)
     assert found is None
     assert any(message in e.message for e in d.errors), [e.message for e in d.errors]
+
+
+def test_whether_a_plate_turns_meanwhile_is_worked_out_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is asked at each sample of a run, and each end of a way is an inverse."""
+    asked: list[float] = []
+    of_line = AlongTrajectory.q
+
+    def q(path: AlongTrajectory, t: float) -> Array:
+        asked.append(t)
+        return of_line(path, t)
+
+    still, arm = over_seam(), over_seam()
+    calm = still.begin(MoveLinear(SEAM, frame="seam", along=(rail(0.2),)), 0.0)
+    motion = arm.begin(MoveLinear(SEAM, frame="seam", along=(plate(40.0),)), 0.0)
+    assert isinstance(motion.trajectory, AlongTrajectory)
+    monkeypatch.setattr(AlongTrajectory, "q", q)
+    for _ in range(3):
+        assert turned(LEFT, motion) == {"left/plate"} and turned(LEFT, calm) == frozenset()
+    assert sorted(asked) == sorted((0.0, motion.duration, 0.0, calm.duration))
 
 
 def test_without_its_limits_an_axis_is_none() -> None:

@@ -23,7 +23,7 @@ from pn2code.verify.exploring.dependency import dependency, recurring
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.updates import How
 
-NETS = amount(8, 1000)
+NETS = amount(6, 1000)
 MARKINGS = 60
 FEWER = amount(25, 60)
 """Markings of nets of which there are many."""
