@@ -30,6 +30,7 @@ NETS: Mapping[str, Callable[[int], str]] = {
     "anything": numbered,
     "styles": lambda seed: union(seed, 1).text(0),
     "references": lambda seed: referring(seed, 1).text(0),
+    "closed": lambda seed: shape(Random(seed)).net,
 }
 """Families of nets without a cell, by their seeds."""
 CELLS: Mapping[str, Callable[[Random], Cell]] = {

@@ -87,6 +87,8 @@ def _of_cells(known: list[Way]) -> Iterator[Way]:
             for reduction in (Reduction.PARTIAL_ORDER, Reduction.SYMMETRY, Reduction.TIME):
                 other = replace(limits, reductions=(reduction,))
                 yield Way(f"{name} --reduce {reduction}", other, Checks(channel_model=False))
+            both = Checks(channel_model=False)
+            yield Way(f"{name} --no-medium --durations", limits, both, durations=True)
     yield Way("--no-controller", _ALL, Checks(controller=False))
     yield Way("--no-controller --no-medium", _ALL, Checks(controller=False, channel_model=False))
     yield Way("--durations", _ALL, durations=True)
