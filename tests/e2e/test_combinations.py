@@ -71,6 +71,7 @@ def test_what_contradicts() -> None:
     assert not list(known.add("second", {"a": "yes", "b": "no", "c": "no"}))
     assert list(known.add("third", {"a": "no"})) == ["`a`: no with third, yes with first"]
     assert known.answers == {"b": "no", "c": "no"}
+    assert list(known.add("fourth", {"ltl G !fires(T, { true })": "yes", "ltl G !fires(T)": "no"}))
 
 
 def test_ways_are_different() -> None:

@@ -12,7 +12,7 @@ from random import Random
 import pytest
 from tools.combinations.asked import KNOWN, Answers, Case
 from tools.combinations.runs import contradicted
-from tools.combinations.subjects import make, questions
+from tools.combinations.subjects import ANYHOW, make, questions
 from tools.combinations.ways import WHOLE, Way, ways
 
 from pn2code.diagnostics import Diagnostics
@@ -43,7 +43,7 @@ class Known:
         for asked, answer in rows.items():
             if answer not in KNOWN:
                 continue
-            of = self.said.setdefault(asked, {})
+            of = self.said.setdefault(asked.replace(ANYHOW, ""), {})
             other = next((a for a in of if a != answer), None)
             if other is not None and answer not in of:
                 yield f"`{asked}`: {answer} with {name}, {other} with {of[other]}"

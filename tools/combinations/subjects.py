@@ -6,6 +6,7 @@ subject.path, subject.cell
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,6 +42,10 @@ CELLS: Mapping[str, Callable[[Random], Cell]] = {
 """Families of cells."""
 FAMILIES = (*NETS, *CELLS)
 QUESTIONS = 14
+TWINS = 2
+"""Questions that are asked again with a condition on bindings that is true, which are answered in another net."""
+ANYHOW = ", { true }"
+_STEP = re.compile(r"fires\(([^(){}]*)\)")
 
 
 @dataclass(frozen=True)
@@ -109,4 +114,7 @@ def questions(r: Random, net: FlatNet) -> list[str]:
         lambda: f"every {count()} is followed by {count()} within {r.randint(1, 9)} time",
     )
     texts = [r.choice(kinds)() for _ in range(QUESTIONS)]
-    return list(dict.fromkeys([*texts, *(author.property() for _ in range(QUESTIONS // 2))]))
+    texts += [author.property() for _ in range(QUESTIONS // 2)]
+    known = [x for x in texts if _STEP.search(x)]
+    twins = [_STEP.sub(rf"fires(\1{ANYHOW})", x) for x in r.sample(known, min(TWINS, len(known)))]
+    return list(dict.fromkeys([*texts, *twins]))
