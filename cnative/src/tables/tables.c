@@ -11,8 +11,20 @@
 
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <signal.h>
+#include <sys/prctl.h>
+#endif
 
 enum { ARGUMENTS = 6, WITH_PATIENCE };
+
+/* Nobody works for one who was killed. */
+static void end_with_parent(void)
+{
+#ifdef __linux__
+    (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+}
 
 int main(int count, char **argument)
 {
@@ -20,6 +32,7 @@ int main(int count, char **argument)
     if ((count != (int)ARGUMENTS) && (count != (int)WITH_PATIENCE)) {
         tb_fail(TB_EXIT_WRONG, "usage: tables FILE METHOD SECONDS MIB SEED [PATIENCE]");
     }
+    end_with_parent();
     const char *method = argument[2];
     const double seconds = strtod(argument[3], NULL);
     const uint64_t seed = strtoull(argument[5], NULL, 10);
