@@ -16,17 +16,25 @@ from helpers.pnml_nets import arc, net, place, transition
 
 STUCK = """
 import os, sys, time
-from pn2code.contest import asking, engine, examinations, portfolio
+from pn2code.contest import asking, engine, examinations, lines, watchdog
 from pn2code.start import main
+
+class Watchdog(watchdog._Watchdog):
+    ends = property(lambda self: 0.0 if os.path.exists({flag!r}) else 1e9, lambda self, ends: None)
+
+def is_over():
+    open({flag!r}, "w").close()
 
 def stuck(*_, **__):
     print(os.getpid(), file=sys.stderr, flush=True)
     {how}
 
+watchdog._Watchdog = Watchdog
 {where} = stuck
 main()
 """
-HANGS = "sum(range(10 ** 13))"
+"""The time is over when the work has come so far, however long that takes."""
+HANGS = "is_over(); sum(range(10 ** 13))"
 """One operation of C, during which no other thread of Python runs and no signal is heard."""
 FILE = """<?xml version="1.0"?>
 <property-set xmlns="http://mcc.lip6.fr/">
@@ -54,14 +62,14 @@ def _folder(path: Path) -> Path:
 
 
 @contextmanager
-def _stuck(
-    folder: Path, examination: str, where: str, how: str, seconds: str
-) -> Iterator[subprocess.Popen[str]]:
+def _stuck(folder: Path, examination: str, where: str, how: str) -> Iterator[subprocess.Popen[str]]:
     """The command with a function of its own replaced."""
-    program = STUCK.format(where=where, how=how)
+    flag = folder / "over"
+    flag.unlink(missing_ok=True)
+    program = STUCK.format(where=where, how=how, flag=str(flag))
     command = [sys.executable, "-c", program, "contest", str(folder), examination]
     process = subprocess.Popen(
-        [*command, "--max-seconds", seconds],
+        [*command, "--max-seconds", "6000"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -99,7 +107,7 @@ def test_what_hangs_in_c_does_not_keep_the_command(tmp_path: Path) -> None:
         ("StateSpace", [""]),
     ):
         where = "asking.space" if examination == "StateSpace" else "asking.asked"
-        with _stuck(folder, examination, where, HANGS, "4") as process:
+        with _stuck(folder, examination, where, HANGS) as process:
             said, errors = process.communicate(timeout=PATIENCE_S)
         assert said.splitlines() == [f"{name}CANNOT_COMPUTE" for name in names], errors
         assert process.returncode == 0
@@ -108,8 +116,8 @@ def test_what_hangs_in_c_does_not_keep_the_command(tmp_path: Path) -> None:
 
 def test_what_was_said_is_not_said_again(tmp_path: Path) -> None:
     """The second answer never comes."""
-    how = f"yield portfolio.Result('Net-b', False, 'X')\n    time.sleep(0.1)\n    {HANGS}"
-    with _stuck(_folder(tmp_path), "CTLCardinality", "asking.answers", how, "4") as process:
+    how = f"yield lines.Result('Net-b', False, 'X')\n    time.sleep(0.1)\n    {HANGS}"
+    with _stuck(_folder(tmp_path), "CTLCardinality", "asking.answers", how) as process:
         said, errors = process.communicate(timeout=PATIENCE_S)
     expected = ["FORMULA Net-b FALSE TECHNIQUES X", "FORMULA Net-a CANNOT_COMPUTE"]
     assert said.splitlines() == expected, errors
@@ -119,7 +127,7 @@ def test_what_was_said_is_not_said_again(tmp_path: Path) -> None:
 def test_a_process_that_is_killed_has_said_what_is_open(tmp_path: Path) -> None:
     """As where there is no memory left."""
     how = "os.kill(os.getpid(), 9)"
-    with _stuck(_folder(tmp_path), "CTLCardinality", "asking.answers", how, "60") as process:
+    with _stuck(_folder(tmp_path), "CTLCardinality", "asking.answers", how) as process:
         said, errors = process.communicate(timeout=PATIENCE_S)
     assert said.splitlines() == [f"FORMULA Net-{x} CANNOT_COMPUTE" for x in "ab"]
     assert "ended by signal 9" in errors and process.returncode == 128 + signal.SIGKILL
@@ -130,7 +138,7 @@ def test_signals_end_both(tmp_path: Path) -> None:
     folder = _folder(tmp_path)
     for number, code in ((signal.SIGTERM, 130), (signal.SIGINT, 130), (signal.SIGKILL, -9)):
         how = "time.sleep(600)"
-        with _stuck(folder, "CTLCardinality", "asking.answers", how, "600") as process:
+        with _stuck(folder, "CTLCardinality", "asking.answers", how) as process:
             assert process.stderr is not None
             worker = int(process.stderr.readline())
             assert worker != process.pid

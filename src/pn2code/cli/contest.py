@@ -20,7 +20,7 @@ from pn2code.contest.asking import Asking
 from pn2code.contest.engine import engine
 from pn2code.contest.examinations import ALL, names
 from pn2code.contest.formulas import FormulaError
-from pn2code.contest.portfolio import METHODS
+from pn2code.contest.rounds import METHODS
 from pn2code.contest.tables import Tables
 from pn2code.contest.watchdog import watched
 from pn2code.contest.words import UNKNOWN

@@ -18,7 +18,8 @@ from pathlib import Path
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.contest.engine import Space
 from pn2code.contest.examinations import SPACE, Asked, asked
-from pn2code.contest.portfolio import answers, space
+from pn2code.contest.portfolio import answers
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
 from pn2code.contest.watchdog import Watch
