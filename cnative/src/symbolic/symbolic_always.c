@@ -42,7 +42,7 @@ static sy_node_t some_cycle(sy_diagrams_t *d, sy_node_t within)
     return (sy_node_t)SY_NONE;
 }
 
-sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p)
+sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p, bool is_any)
 {
     if (p == d->space) {
         return p; /* wherever a path goes */
@@ -50,7 +50,7 @@ sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p)
     sy_node_t found = sy_saturated(d, &d->backwards, sy_intersection(d, sy_where_dead(d), p), p);
     sy_node_t rest = sy_difference(d, p, found);
     uint32_t steps = 1U;
-    while (rest != (sy_node_t)SY_NONE) {
+    while ((rest != (sy_node_t)SY_NONE) && !(is_any && (found != (sy_node_t)SY_NONE))) {
         for (uint32_t i = 0U; i < steps; i++) {
             const sy_node_t kept = sy_before(d, rest, rest);
             if (kept == rest) {

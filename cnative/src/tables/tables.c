@@ -51,7 +51,7 @@ int main(int count, char **argument)
     } else if (strcmp(method, "ltl") == 0) {
         tb_ltl(&job, seed, seconds);
     } else if ((strcmp(method, "diagrams") == 0) || (strcmp(method, "sizes") == 0)) {
-        tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds, patience);
+        tb_diagrams(&job, strcmp(method, "sizes") == 0, seed, seconds, patience);
     } else {
         tb_fail(TB_EXIT_WRONG, "`%s` is no method", method);
     }
