@@ -25,7 +25,7 @@ typedef struct run {
     sy_node_t *known; /* of one question (answer_nearby) */
 } run_t;
 
-#define NEARBY 0.4 /* of the time for formulas of branching time, for those that can do with a part of the markings */
+#define NEARBY 0.25 /* of the time for formulas of branching time, for those that can do with a part of the markings */
 
 /* --- questions ---------------------------------------------------------------------------------------------------- */
 

@@ -31,6 +31,8 @@ _ORDERS = (0, 1, 0, 2)
 """Orders of the places of diagrams that have most of the time, by round; the others are tried for a short time."""
 _ORDERS_ALONE = ((0, 1), (0, 1), (0, 2), (0, 3))
 """The same where diagrams have both lanes."""
+_NEAR_FIRST, _ALL_FIRST = 1, 2
+"""Seeds of diagrams: formulas of CTL are asked near to the initial marking first, or in all markings first."""
 _WEIGHT = 4.0
 """So much more time have questions that are asked for themselves than those that only help."""
 _LEAST_SLICE_S = 0.25
@@ -133,6 +135,8 @@ class Rounds:
                         seed=2 * number + which + 1,
                     )
                     if method == METHOD:
+                        is_near = (which if self.only == METHOD else number + 1) % 2 == 0
+                        task = replace(task, seed=_NEAR_FIRST if is_near else _ALL_FIRST)
                         yield from self._drawn(task, net, texts, which)
                     else:
                         yield replace(task, method=method, text=net.text([*texts.values()]))
