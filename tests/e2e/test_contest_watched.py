@@ -176,3 +176,27 @@ with engine.engine(Diagnostics()) as made:
         time.sleep(0.02)
     process.communicate("\n", timeout=PATIENCE_S)
     assert _has_ended(pid)
+
+
+def test_a_command_that_is_loaded_too_late_says_what_is_open(tmp_path: Path) -> None:
+    """The time is over before the work begins."""
+    program = """
+import time
+from pn2code.base import deadline
+from pn2code.contest import watchdog
+
+deadline.note_start()
+late = deadline.Deadline(6.0, 0.0)
+watchdog.watched(late, ["Net-a", "Net-b"])
+time.sleep(600)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert done.stdout.splitlines() == [f"FORMULA Net-{x} CANNOT_COMPUTE" for x in "ab"]
+    assert done.returncode == 0, done.stderr

@@ -61,8 +61,7 @@ def contest(
     """
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
-    watch = watched(deadline)
-    watch.note_open(names(examination, folder))
+    watch = watched(deadline, names(examination, folder))
     d = Diagnostics()
     net: Tables | FlatNet | None = None
     with suppress(TimeIsOverError), deadline.enforced():

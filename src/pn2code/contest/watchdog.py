@@ -1,6 +1,6 @@
 """A process that watches the one that works: at the limit it says what is open, and ends.
 
-    watch = watched(deadline)         # from here on the work goes on in a process of its own
+    watch = watched(deadline, ["a"])  # from here on the work goes on in a process of its own
     watch.note_open(["a", "b"])
     watch.note_said("a")              # before it is printed
 
@@ -65,10 +65,14 @@ class Watch:
             data = data[os.write(self._told, data) :]
 
 
-def watched(deadline: Deadline) -> Watch:
+def watched(deadline: Deadline, names: Iterable[str]) -> Watch:
     """From here on a process works that is watched; it is the one that comes back from here.
 
     Within a larger program (a test), beside other threads, or without a limit, nobody watches.
+
+    Args:
+        deadline: the limit; it may be over already.
+        names: the lines that are wanted, as far as they are known; none: they are not.
     """
     if not is_command() or deadline.seconds is None or threading.active_count() > 1:
         return Watch()
@@ -80,7 +84,7 @@ def watched(deadline: Deadline) -> Watch:
     if worker != 0:
         os.close(ours)
         os.close(alive)
-        _Watchdog(worker, theirs, deadline).run()
+        _Watchdog(worker, theirs, deadline, names).run()
     os.close(theirs)
     os.close(held)
     threading.Thread(target=_end_with, args=(alive,), daemon=True).start()
@@ -94,12 +98,12 @@ def _end_with(alive: int) -> None:
 
 
 class _Watchdog:
-    def __init__(self, worker: int, told: int, deadline: Deadline) -> None:
+    def __init__(self, worker: int, told: int, deadline: Deadline, names: Iterable[str]) -> None:
         self.worker = worker
         self.told = told
         grace = min(_GRACE_S, _LEAST_GRACE_S + _GRACE * (deadline.seconds or 0.0))
         self.ends = deadline.ends + grace
-        self.open: dict[str, None] | None = None
+        self.open: dict[str, None] | None = dict.fromkeys(names) or None
         self.is_all_said = False
         self.heard = b""
         self.interrupted: tuple[int, float] | None = None
