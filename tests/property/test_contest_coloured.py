@@ -16,7 +16,8 @@ from helpers.random_tables import Graph
 from pn2code.contest import portfolio
 from pn2code.contest.engine import engine
 from pn2code.contest.examinations import asked
-from pn2code.contest.portfolio import answers, space
+from pn2code.contest.portfolio import answers
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front

@@ -15,8 +15,8 @@ from helpers.random_tables import Graph, random_tables, restless_tables
 from helpers.table_families import kanban
 from pn2code.contest.counting import Counted, smaller, units_of
 from pn2code.contest.engine import Space, Task, ask, engine
-from pn2code.contest.portfolio import space
 from pn2code.contest.reduction.net import Affine
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 

@@ -12,7 +12,8 @@ from helpers.examined import examined, sizes
 from helpers.random_tables import Graph
 from helpers.table_families import FAMILIES, readers_and_writers
 from pn2code.contest.engine import engine
-from pn2code.contest.portfolio import answers, space
+from pn2code.contest.portfolio import answers
+from pn2code.contest.space import space
 from pn2code.diagnostics import Diagnostics
 
 SECONDS = 600.0

@@ -19,9 +19,13 @@ typedef struct run {
     double seconds;
     double patience; /* until the set is whole */
     bool is_sizes;
+    bool is_nearby_first;
     sy_diagrams_t d;
     sy_frozen_t frozen;
+    sy_node_t *known; /* of one question (answer_nearby) */
 } run_t;
+
+#define NEARBY 0.25 /* of the time for formulas of branching time, for those that can do with a part of the markings */
 
 /* --- questions ---------------------------------------------------------------------------------------------------- */
 
@@ -49,22 +53,36 @@ static void answer(run_t *r, tb_question_t *q)
     tb_say(q, is_so ? TB_YES : TB_NO, METHOD);
 }
 
-static void answer_all(run_t *r, tb_kind_t kind)
+/* Of branching time, as far as it can be seen without a look at all markings. */
+static void answer_nearby(run_t *r, tb_question_t *q)
+{
+    for (uint32_t i = 0U; i < q->formulas; i++) {
+        r->known[i] = (sy_node_t)SY_ANY;
+    }
+    tb_say(q, sy_holds_at_first(&r->d, q->formula, r->known) ? TB_YES : TB_NO, METHOD);
+}
+
+static bool is_asked(const tb_question_t *q, tb_kind_t kind)
+{
+    return (q->kind == kind) && (q->answer == TB_UNKNOWN);
+}
+
+static void answer_all(run_t *r, tb_kind_t kind, void (*with)(run_t *r, tb_question_t *q), double until)
 {
     volatile uint32_t left = 0U;
     for (uint32_t i = 0U; i < r->job->questions; i++) {
-        left += (r->job->question[i].kind == kind) ? 1U : 0U;
+        left += is_asked(&r->job->question[i], kind) ? 1U : 0U;
     }
     for (volatile uint32_t i = 0U; i < r->job->questions; i++) {
         tb_question_t *q = &r->job->question[i];
-        if (q->kind != kind) {
+        if (!is_asked(q, kind)) {
             continue;
         }
         const double now = tb_elapsed();
-        tb_limit_time(now + ((r->seconds - now) / (double)left));
+        tb_limit_time(now + ((until - now) / (double)left));
         left--;
         if (setjmp(r->d.given_up) == 0) {
-            answer(r, q);
+            with(r, q);
         } else {
             r->d.edge_words = 0U; /* nodes that were in the making */
         }
@@ -88,6 +106,24 @@ static void find_space(run_t *r)
     (void)fflush(stdout);
 }
 
+/* Two ways; the seed says which comes first. */
+static void answer_branching(run_t *r)
+{
+    const double left = r->seconds - tb_elapsed();
+    uint32_t most = 1U;
+    for (uint32_t i = 0U; i < r->job->questions; i++) {
+        most = (r->job->question[i].formulas > most) ? r->job->question[i].formulas : most;
+    }
+    r->known = tb_new(most, sizeof *r->known);
+    if (r->is_nearby_first) {
+        answer_all(r, TB_CTL, answer_nearby, tb_elapsed() + (NEARBY * left));
+        answer_all(r, TB_CTL, answer, r->seconds);
+    } else {
+        answer_all(r, TB_CTL, answer, tb_elapsed() + ((1.0 - NEARBY) * left));
+        answer_all(r, TB_CTL, answer_nearby, r->seconds);
+    }
+}
+
 static void *work(void *argument)
 {
     run_t *r = argument;
@@ -103,22 +139,23 @@ static void *work(void *argument)
     if (r->is_sizes) {
         sy_say_sizes(&r->d, &r->frozen, r->job);
     } else {
-        answer_all(r, TB_BOUND);
-        answer_all(r, TB_REACH);
-        answer_all(r, TB_CTL);
-        answer_all(r, TB_LTL);
+        answer_all(r, TB_BOUND, answer, r->seconds);
+        answer_all(r, TB_REACH, answer, r->seconds);
+        answer_branching(r);
+        answer_all(r, TB_LTL, answer, r->seconds);
     }
     return NULL;
 }
 
 /* The functions call themselves from level to level: they need a stack of their own. */
-void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds, double patience)
+void tb_diagrams(tb_job_t *job, bool is_sizes, uint64_t seed, double seconds, double patience)
 {
     static run_t r;
     pthread_attr_t attributes;
     pthread_t worker;
     r.job = job;
     r.is_sizes = is_sizes;
+    r.is_nearby_first = (seed % 2U) == 1U;
     r.seconds = seconds;
     r.patience = patience;
     if (job->net.places > (uint32_t)MOST_LEVELS) {

@@ -202,18 +202,22 @@ void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f, const tb_job_t *job);
 
 /* The reachable markings in which a formula holds. */
 sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f);
-/* sum <= limit */
-sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f);
+/* sum <= limit, of some reachable markings */
+sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f, sy_node_t within);
 /* Nothing is enabled. */
 sy_node_t sy_where_dead(sy_diagrams_t *d);
 /* The markings of `within` from which a transition leads into a set. */
 sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within);
 /* The markings to which a transition leads from a set. */
 sy_node_t sy_after(sy_diagrams_t *d, sy_node_t n);
-/* The markings from which a path stays in a set of reachable ones for ever, or until it ends (symbolic_always.c). */
-sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p);
-/* The reachable markings in which none of some transitions is enabled (symbolic_enabled.c). */
-sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count);
+/* The markings from which a path stays in a set of reachable ones for ever, or until it ends (symbolic_always.c).
+ * If any will do, some of them, and none only if there is none. */
+sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p, bool is_any);
+/* Those of some reachable markings in which none of some transitions is enabled (symbolic_enabled.c). */
+sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count, sy_node_t within);
+/* Whether a formula holds in the initial marking (symbolic_local.c). `known` has an entry for each formula of the
+ * question, SY_ANY at first. */
+bool sy_holds_at_first(sy_diagrams_t *d, const tb_formula_t *f, sy_node_t *known);
 
 /* --- automata (symbolic_linear.c) --------------------------------------------------------------------------------- */
 

@@ -42,12 +42,16 @@ static sy_node_t some_cycle(sy_diagrams_t *d, sy_node_t within)
     return (sy_node_t)SY_NONE;
 }
 
-sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p)
+sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p, bool is_any)
 {
     if (p == d->space) {
         return p; /* wherever a path goes */
     }
-    sy_node_t found = sy_saturated(d, &d->backwards, sy_intersection(d, sy_where_dead(d), p), p);
+    const sy_node_t dead = sy_intersection(d, sy_where_dead(d), p);
+    if (is_any && (dead != (sy_node_t)SY_NONE)) {
+        return dead;
+    }
+    sy_node_t found = sy_saturated(d, &d->backwards, dead, p);
     sy_node_t rest = sy_difference(d, p, found);
     uint32_t steps = 1U;
     while (rest != (sy_node_t)SY_NONE) {
@@ -60,9 +64,13 @@ sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p)
         }
         steps = (steps < (1U << 20U)) ? (2U * steps) : steps;
         if (rest != (sy_node_t)SY_NONE) {
-            const sy_node_t cycle = sy_saturated(d, &d->backwards, some_cycle(d, rest), rest);
-            found = sy_union(d, found, cycle);
-            rest = sy_difference(d, rest, cycle);
+            const sy_node_t cycle = some_cycle(d, rest);
+            if (is_any && (cycle != (sy_node_t)SY_NONE)) {
+                return cycle;
+            }
+            const sy_node_t to_cycle = sy_saturated(d, &d->backwards, cycle, rest);
+            found = sy_union(d, found, to_cycle);
+            rest = sy_difference(d, rest, to_cycle);
         }
     }
     return found;

@@ -67,12 +67,12 @@ static sy_node_t without_all(sy_diagrams_t *d, const tests_t *e, sy_node_t n)
     return found;
 }
 
-sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count)
+sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count, sy_node_t within)
 {
     const size_t levels = (size_t)d->levels + 3U;
     tests_t e = { tb_new((size_t)count + 1U, sizeof *e.path), tb_new(levels, sizeof *e.first),
                   (uint32_t)SY_SUM + d->sums };
-    sy_node_t found = d->space;
+    sy_node_t found = within;
     d->sums++;
     for (uint32_t i = 0U; i < count; i++) {
         const sy_path_t path = d->test[transition[i]];

@@ -91,14 +91,14 @@ static sy_node_t at_most(sy_diagrams_t *d, const sum_t *s, sy_node_t n, uint32_t
     return found;
 }
 
-sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f)
+sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f, sy_node_t within)
 {
     sum_t s = { tb_new((size_t)f->count + 1U, sizeof(term_t)), (uint32_t)SY_SUM + d->sums };
     d->sums++;
     if (!order_terms(d, f, s.term)) {
         sy_give_up(d);
     }
-    const sy_node_t found = at_most(d, &s, d->space, 0U, f->limit);
+    const sy_node_t found = at_most(d, &s, within, 0U, f->limit);
     tb_free(s.term, (size_t)f->count + 1U, sizeof(term_t));
     return found;
 }
@@ -112,7 +112,7 @@ static sy_node_t other(sy_diagrams_t *d, sy_node_t n)
 
 static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
 {
-    return other(d, sy_where_none(d, f->transition, f->count));
+    return other(d, sy_where_none(d, f->transition, f->count, d->space));
 }
 
 /* None of all transitions is enabled, or none of those that change nothing. */
@@ -127,7 +127,7 @@ static sy_node_t where_none_of(sy_diagrams_t *d, bool is_of_idle)
             count++;
         }
     }
-    const sy_node_t found = sy_where_none(d, chosen, count);
+    const sy_node_t found = sy_where_none(d, chosen, count, d->space);
     tb_free(chosen, room, sizeof *chosen);
     return found;
 }
@@ -191,7 +191,7 @@ static sy_node_t always_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 {
     const sy_node_t not_q = other(d, q);
     const sy_node_t neither = sy_difference(d, not_q, p);
-    return other(d, sy_union(d, exists_until(d, not_q, neither), sy_always(d, not_q)));
+    return other(d, sy_union(d, exists_until(d, not_q, neither), sy_always(d, not_q, false)));
 }
 
 static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
@@ -201,8 +201,8 @@ static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
     case TB_EX: return sy_before(d, p, d->space);
     case TB_AX: return other(d, sy_before(d, other(d, p), d->space));
     case TB_EF: return leads_to(d, p);
-    case TB_AF: return other(d, sy_always(d, other(d, p)));
-    case TB_EG: return sy_always(d, p);
+    case TB_AF: return other(d, sy_always(d, other(d, p), false));
+    case TB_EG: return sy_always(d, p, false);
     case TB_AG: return other(d, leads_to(d, other(d, p)));
     case TB_EU: return exists_until(d, p, sy_where(d, f->part[1]));
     case TB_AU: return always_until(d, p, sy_where(d, f->part[1]));
@@ -228,7 +228,7 @@ sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f)
     case TB_NOT: return other(d, sy_where(d, f->part[0]));
     case TB_AND:
     case TB_OR: return where_parts(d, f);
-    case TB_SUM: return sy_where_sum(d, f);
+    case TB_SUM: return sy_where_sum(d, f, d->space);
     case TB_ENABLED: return where_enabled(d, f);
     case TB_DEAD: return sy_where_dead(d);
     default: return where_temporal(d, f);

@@ -11,8 +11,20 @@
 
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <signal.h>
+#include <sys/prctl.h>
+#endif
 
 enum { ARGUMENTS = 6, WITH_PATIENCE };
+
+/* Nobody works for one who was killed. */
+static void end_with_parent(void)
+{
+#ifdef __linux__
+    (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+}
 
 int main(int count, char **argument)
 {
@@ -20,6 +32,7 @@ int main(int count, char **argument)
     if ((count != (int)ARGUMENTS) && (count != (int)WITH_PATIENCE)) {
         tb_fail(TB_EXIT_WRONG, "usage: tables FILE METHOD SECONDS MIB SEED [PATIENCE]");
     }
+    end_with_parent();
     const char *method = argument[2];
     const double seconds = strtod(argument[3], NULL);
     const uint64_t seed = strtoull(argument[5], NULL, 10);
@@ -38,7 +51,7 @@ int main(int count, char **argument)
     } else if (strcmp(method, "ltl") == 0) {
         tb_ltl(&job, seed, seconds);
     } else if ((strcmp(method, "diagrams") == 0) || (strcmp(method, "sizes") == 0)) {
-        tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds, patience);
+        tb_diagrams(&job, strcmp(method, "sizes") == 0, seed, seconds, patience);
     } else {
         tb_fail(TB_EXIT_WRONG, "`%s` is no method", method);
     }

@@ -304,6 +304,7 @@ void tb_reach(tb_job_t *job, double each);
 void tb_ctl(tb_job_t *job, uint64_t seed, double seconds);
 /* With seeds above 4 a run is hunted for first (tables_ltl_hunt.c). */
 void tb_ltl(tb_job_t *job, uint64_t seed, double seconds);
-void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds, double patience); /* symbolic/ */
+/* Formulas of branching time are looked at nearby first if the seed is odd, and in all markings first if it is even. */
+void tb_diagrams(tb_job_t *job, bool is_sizes, uint64_t seed, double seconds, double patience); /* symbolic/ */
 
 #endif

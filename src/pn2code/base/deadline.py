@@ -43,6 +43,11 @@ def note_start() -> None:
     _started = time.monotonic()
 
 
+def is_command() -> bool:
+    """Whether this process is a command, and not a program that uses its functions."""
+    return _started is not None
+
+
 class OverError(BaseException):
     """A deadline came while pure Python was at work. It is no error of what was done, so nothing catches it."""
 

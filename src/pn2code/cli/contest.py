@@ -16,12 +16,14 @@ from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.progress_line import SILENCE_S, Line
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
-from pn2code.contest.asking import UNKNOWN, Asking
+from pn2code.contest.asking import Asking
 from pn2code.contest.engine import engine
-from pn2code.contest.examinations import ALL
+from pn2code.contest.examinations import ALL, names
 from pn2code.contest.formulas import FormulaError
-from pn2code.contest.portfolio import METHODS
+from pn2code.contest.rounds import METHODS
 from pn2code.contest.tables import Tables
+from pn2code.contest.watchdog import watched
+from pn2code.contest.words import UNKNOWN
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
@@ -59,6 +61,7 @@ def contest(
     """
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
+    watch = watched(deadline, names(examination, folder))
     d = Diagnostics()
     net: Tables | FlatNet | None = None
     with suppress(TimeIsOverError), deadline.enforced():
@@ -82,6 +85,7 @@ def contest(
             mebibytes=memory,
             only=only or "",
             say=lambda why: typer.echo(f"pn2code: {why}", err=True),
+            watch=watch,
         )
         try:
             if isinstance(net, Tables):

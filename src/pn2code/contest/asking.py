@@ -18,15 +18,17 @@ from pathlib import Path
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.contest.engine import Space
 from pn2code.contest.examinations import SPACE, Asked, asked
-from pn2code.contest.portfolio import answers, space
+from pn2code.contest.portfolio import answers
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
+from pn2code.contest.watchdog import Watch
+from pn2code.contest.words import UNKNOWN, unknown
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.unfold.plain import TooLargeError
 
-UNKNOWN = "CANNOT_COMPUTE"
 FIRST = 0.15
 FIRST_S = 6.0
 """Of the time, and at most so long, a large coloured net is asked without its colours at first."""
@@ -48,6 +50,7 @@ class Asking:
         mebibytes: of memory.
         only: a method, alone; "": all.
         say: where reasons go why something is not known.
+        watch: who is told what is open, and what is printed.
     """
 
     def __init__(
@@ -60,6 +63,7 @@ class Asking:
         mebibytes: int,
         only: str,
         say: Callable[[str], None],
+        watch: Watch | None = None,
     ) -> None:
         self.program = program
         self.examination = examination
@@ -68,6 +72,7 @@ class Asking:
         self.mebibytes = mebibytes
         self.only = only
         self.say = say
+        self.watch = Watch() if watch is None else watch
         self.unknown: dict[str, str] | None = None
         """Lines that are open, with the reason; None: nothing was asked yet."""
 
@@ -82,6 +87,7 @@ class Asking:
             sizes = space(
                 self.program, tables, seconds=left, mebibytes=self.mebibytes, only=self.only
             )
+            self.watch.note_all_said()
             yield from _space(sizes)
             return
         yield from self._answers(tables, self.deadline, None)
@@ -143,6 +149,7 @@ class Asking:
             return
         if self.unknown is None:
             self.unknown = {q.name: "" for q in questions}
+            self.watch.note_open(self.unknown)
         questions = [q for q in questions if q.name in self.unknown]
         if game is None:
             self.unknown.update({q.name: q.why_not for q in questions})
@@ -157,18 +164,21 @@ class Asking:
         )
         for result in found:
             del self.unknown[result.name]
+            self.watch.note_said(result.name)
             value = str(result.value).upper()
             yield f"FORMULA {result.name} {value} TECHNIQUES {result.techniques}"
 
     def _rest(self) -> Iterator[str]:
         """What is not known."""
         if self.unknown is None:
+            self.watch.note_all_said()
             yield UNKNOWN
             return
         for name, why in self.unknown.items():
             if why:
                 self.say(f"{name}: {why}")
-            yield f"FORMULA {name} {UNKNOWN}"
+            self.watch.note_said(name)
+            yield unknown(name)
 
 
 def is_large(net: FlatNet, game: Game) -> bool:

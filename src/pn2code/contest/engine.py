@@ -36,6 +36,9 @@ _WRONG = 2
 """Exit code: the tables are wrong."""
 _GRACE_S = 1.0
 """After its time a process is ended."""
+_LATE_S = 0.5
+_LATE = 0.05
+"""So much later than its time, but by no more than that part of it, a process may say what it knows."""
 
 
 @frozen
@@ -148,6 +151,11 @@ def ask(
             patience = time.monotonic() + _GRACE_S / 4
             for lane in running:
                 lane.join(max(0.0, patience - time.monotonic()))
+
+
+def grace_of(seconds: float) -> float:
+    """How long after the end of so much time a process is waited for."""
+    return max(0.0, min(_LATE_S, _LATE * seconds))
 
 
 def _time_left(until: float | None) -> float | None:

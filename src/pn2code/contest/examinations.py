@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Tokens, read
+from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Tokens, names_in, read
 from pn2code.contest.implied import Implied
 from pn2code.contest.tables import Tables
 from pn2code.contest.temporal import check
@@ -98,6 +98,13 @@ def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
         except FormulaError as error:
             found.append(Asked(question.name, why_not=str(error)))
     return found
+
+
+def names(examination: str, folder: Path) -> list[str]:
+    """What the lines of an examination are called, before the net is known; of the state space none."""
+    if examination in GLOBAL:
+        return [examination]
+    return names_in(folder / f"{examination}.xml") if examination in FORMULAS else []
 
 
 def _of_formula(tables: Tables, examination: str, name: str, f: Formula) -> Asked:

@@ -14,7 +14,8 @@ from pn2code.contest import diagrams, equation
 from pn2code.contest.engine import Said, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import AtMost, Constant, Op, Tokens
-from pn2code.contest.portfolio import answers, space
+from pn2code.contest.portfolio import answers
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 
 
