@@ -357,8 +357,12 @@ class Elaborator:
             self._ctx.top.values["ref"] = with_reference
 
     def program(self) -> Program:
-        """All declarations so far. Meaningful when no error was reported."""
+        """All declarations of the net. Meaningful when no error was reported."""
         self._given.refuse_unknown()
+        return self._so_far()
+
+    def _so_far(self) -> Program:
+        """All declarations so far."""
         return Program(
             declarations=tuple(self._made),
             colsets={n: c for n, c in self._ctx.colsets.items() if c is not None},
@@ -560,7 +564,7 @@ class Elaborator:
         why = ""
         if value is None and self._compute is not None:
             real_time = self._ctx.real_time
-            computed = self._compute(self.program(), exp, fixed=fixed, real_time=real_time)
+            computed = self._compute(self._so_far(), exp, fixed=fixed, real_time=real_time)
             value, why = computed.value, computed.why
         if isinstance(value, int | float | str):
             return Computed(value)
@@ -580,7 +584,7 @@ class Elaborator:
         """The value of an initial marking, by the evaluator that was lent."""
         if self._compute is None:
             return Computed(None)
-        return self._compute(self.program(), exp, fixed=False, real_time=self._ctx.real_time)
+        return self._compute(self._so_far(), exp, fixed=False, real_time=self._ctx.real_time)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""
