@@ -189,8 +189,10 @@ def a_robot_of_an_earlier_run(lab: Lab) -> None:
         )
         assert (shared / f"{name}.status").read_text() == status
         # Who does not want to wait interrupts it, and that is what it says.
-        done = lab.run("odd", folder=folder, failing="ppoll:1:!2")
-        assert (done.code, done.error) == (130, "interrupted by signal 2")
+        # However long it was not let run: seconds go by between any two looks at the clock.
+        for failing in ("ppoll:1:!2", *(f"clock_gettime:{n}-:+5,ppoll:1:!2" for n in (1, 2, 3))):
+            done = lab.run("odd", folder=folder, failing=failing)
+            assert (done.code, done.error) == (130, "interrupted by signal 2"), failing
         os.close(lock)
         lab.run("odd", folder=folder).finished()
 

@@ -17,8 +17,8 @@ Let R be the former, as turns look at it (`Running.of(loose=True)`), and M the l
 
 *then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of
 M is meant up to the supervisor's end, and without a fault. A robot *sends* a message in R when its transition puts it;
-or, where R writes the messages of a transition one after the other (`running.staged`), when it writes it. In M a
-message is written after it has been sent (or then), before those that its side sends later, and after its side has
+or, where R writes the messages of a transition one after the other (`staged_channels.staged`), when it writes it. In M
+a message is written after it has been sent (or then), before those that its side sends later, and after its side has
 emptied what it had taken.
 
 *Files.* What happens to one file is a circle: empty (`0`); written; read, while the message waits in the reader's

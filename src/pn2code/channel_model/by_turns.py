@@ -26,7 +26,8 @@ from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import choose
 from pn2code.properties.questions import ENDLESS
-from pn2code.verify.controller.running import chunks, hasty
+from pn2code.verify.controller.rival_transitions import hasty
+from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits

@@ -28,7 +28,8 @@ from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.premises import COUNTED, IN_TURNS
-from pn2code.verify.controller.running import chunks, hasty
+from pn2code.verify.controller.rival_transitions import hasty
+from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.programs import Sizes

@@ -27,8 +27,8 @@ from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind
-from pn2code.verify.controller.running import hasty as hasty_ones
-from pn2code.verify.controller.running import meek
+from pn2code.verify.controller.rival_transitions import hasty as hasty_ones
+from pn2code.verify.controller.rival_transitions import meek
 
 
 def repeated_unseen(partition: Partition) -> frozenset[int]:
@@ -76,8 +76,8 @@ def compose(
         crashes: how many there may be.
         extra: adds to it.
         loose: as `by_turns` needs it.
-        hasty: scripts that decide while messages come (`running.hasty`) can do whatever their order of looks permits,
-            and more; else they look as if in the order of the files, and can do neither all of that nor more.
+        hasty: scripts that decide while messages come (`rival_transitions.hasty`) can do whatever their order of looks
+            permits, and more; else they look as if in the order of the files, and can do neither all of that nor more.
     """
     composer = Composer(partition, rules, crashes, loose=loose, hasty=hasty)
     if extra is not None:

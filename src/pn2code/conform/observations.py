@@ -2,10 +2,10 @@
 supervisor can tell of it.
 
 found = look(partition, game, scheme, clock, most=20_000)
-found.others[sight]              # {Sight(...): Turn("Robot1.Report {...}", 0)}: what others do to it
+found.others[observation]         # {Observation(...): ObservedChange("Robot1.Report {...}", 0)}: what others do to it
 
 A supervisor sees its own places, the channels that it writes and reads, and the time. What robots do in between,
-it does not see: many markings of the net are one sight, and a program that does the right thing in each sight does it
+it does not see: many markings of the net are one observation, and a program that does the right thing in each does it
 in each marking. Messages that one occurrence gives it come one after the other (I5 of docs/protocol.md), and it may
 execute its cycle between two of them.
 """

@@ -201,7 +201,7 @@ class _Counting:
         found = [(t, self.net.pre[t]) for t in self.net.takers[p]]
         return found + [(t, self.tests[t]) for t in self.tested[p]]
 
-    def _is_obstacle(self, p: int, sum_: Affine) -> bool:
+    def _can_disable(self, p: int, sum_: Affine) -> bool:
         """Whether a transition may lack tokens in `p` alone; no factor is negative, or nothing needs the place."""
         return any(
             sum_.constant + sum(n * needs.get(q, 0) for q, n in sum_.factors.items()) < needs[p]
@@ -254,7 +254,7 @@ class _Counting:
                 others = [(q, b) for q, b in group if q != p and a % b == 0][:_CANDIDATES]
                 for q, b in others:
                     sum_ = Affine(self.net.marking[p] - (a // b) * self.net.marking[q], {q: a // b})
-                    if not self._is_obstacle(p, sum_):
+                    if not self._can_disable(p, sum_):
                         self._remove(p, sum_)
                         group.remove((p, a))
                         removed = True
@@ -292,7 +292,7 @@ class _Counting:
             factors = {places[i]: n for i, n in found.items()}
             constant = net.marking[p] - sum(n * net.marking[q] for q, n in factors.items())
             sum_ = Affine(constant, factors)
-            if self._is_sum(p, factors) and not self._is_obstacle(p, sum_):
+            if self._is_sum(p, factors) and not self._can_disable(p, sum_):
                 self._remove(p, sum_)
                 programs.without(column[p])
                 removed = True

@@ -66,21 +66,21 @@ class Followed:
     reach: Callable[..., bool]
     awaited: tuple[int, int] | None = None
 
-    def on(self, run: int, at: int, sight: object, *, is_last: bool) -> bool | None:
+    def on(self, run: int, at: int, seen: object, *, is_last: bool) -> bool | None:
         """The value of the formula, if the run decides it here.
 
         Args:
             run: its number.
             at: the number of the marking in it, from 0 on; who has not seen all before waits for another run.
-            sight: the marking.
+            seen: the marking.
             is_last: whether it is dead.
         """
         if at and self.awaited != (run, at):
             return None
         self.awaited = None
-        if self.reach(sight):
+        if self.reach(seen):
             return not self.path.is_opposite if self.path.quantifier == "E" else None
-        if not self.before(sight) or is_last:
+        if not self.before(seen) or is_last:
             return self.path.is_opposite if self.path.quantifier == "A" else None
         self.awaited = run, at + 1
         return None

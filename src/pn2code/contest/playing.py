@@ -41,7 +41,7 @@ _RAISED = (GameError, MlException, MlLimit)
 
 
 @frozen
-class Sight:
+class Observation:
     """What is seen of a marking.
 
     Args:
@@ -66,7 +66,7 @@ class Sought:
     """
 
     number: int
-    holds: Callable[[Sight], bool] | None
+    holds: Callable[[Observation], bool] | None
     sum: tuple[tuple[int, int], ...] = ()
     followed: Followed | None = None
     is_linear: bool = False
@@ -100,7 +100,7 @@ class Play(threading.Thread):
         self.is_over = threading.Event()
         self.most: dict[int, int] = {}
         self.runs = 0
-        self.first: list[Sight] = []
+        self.first: list[Observation] = []
         self.has_looked_first = False
         self.is_first_whole = False
         self.seen_first: set[int] = set()
@@ -132,7 +132,7 @@ class Play(threading.Thread):
                 return
             try:
                 enabled = self.game.enabled_transitions(marking)
-                self._look(self._sight(marking, enabled), at)
+                self._look(self._observed(marking, enabled), at)
                 if not enabled:
                     return
                 self.draw.shuffle(enabled)
@@ -147,27 +147,27 @@ class Play(threading.Thread):
                 return
 
     @staticmethod
-    def _sight(marking: Marking, enabled: list[FlatTransition]) -> Sight:
-        return Sight(tuple(map(len, marking.places)), frozenset(t.id for t in enabled))
+    def _observed(marking: Marking, enabled: list[FlatTransition]) -> Observation:
+        return Observation(tuple(map(len, marking.places)), frozenset(t.id for t in enabled))
 
-    def _look(self, sight: Sight, at: int) -> None:
+    def _look(self, seen: Observation, at: int) -> None:
         for sought in self.open():
             n = sought.number
             if sought.followed is not None:
-                value = self._followed(sought, sought.followed, sight, at)
+                value = self._followed(sought, sought.followed, seen, at)
                 if value is not None:
                     self.said.put(Answer(n, value != sought.is_linear, True, TECHNIQUE))
             elif sought.holds is None:
-                total = sum(k * sight.tokens[p] for p, k in sought.sum)
+                total = sum(k * seen.tokens[p] for p, k in sought.sum)
                 if total > self.most.get(n, -1):
                     self.most[n] = total
                     self.said.put(Answer(n, total, False, TECHNIQUE))
-            elif sought.holds(sight):
+            elif sought.holds(seen):
                 self.said.put(Answer(n, True, True, TECHNIQUE))
 
-    def _followed(self, sought: Sought, f: Followed, sight: Sight, at: int) -> bool | None:
+    def _followed(self, sought: Sought, f: Followed, seen: Observation, at: int) -> bool | None:
         if not f.path.is_next:
-            return f.on(self.runs, at, sight, is_last=not sight.enabled)
+            return f.on(self.runs, at, seen, is_last=not seen.enabled)
         if at or sought.number in self.seen_first:
             return None
         self.seen_first.add(sought.number)
@@ -175,7 +175,7 @@ class Play(threading.Thread):
             self.has_looked_first = True
             self._look_first()
         # What follows a dead marking: nothing in branching time, in linear time itself.
-        first = [sight] if sought.is_linear and not sight.enabled else self.first
+        first = [seen] if sought.is_linear and not seen.enabled else self.first
         return next_value(f.path, f.reach, first, is_all=self.is_first_whole)
 
     def _look_first(self) -> None:
@@ -192,7 +192,7 @@ class Play(threading.Thread):
                     except _RAISED:
                         is_whole = False
                         continue
-                    self.first.append(self._sight(after, self.game.enabled_transitions(after)))
+                    self.first.append(self._observed(after, self.game.enabled_transitions(after)))
             self.is_first_whole = is_whole
 
 
@@ -204,36 +204,36 @@ def follow(tables: Tables, f: Formula) -> Followed | None:
     return Followed(path, holds(tables, path.before), holds(tables, path.reach))
 
 
-def holds(tables: Tables, f: Formula) -> Callable[[Sight], bool]:
+def holds(tables: Tables, f: Formula) -> Callable[[Observation], bool]:
     """A formula about one marking as a function of what is seen of it."""
     match f:
         case Truth(value):
-            return lambda sight: value
+            return lambda seen: value
         case Fireable(names):
             wanted = frozenset(names)
-            return lambda sight: not wanted.isdisjoint(sight.enabled)
+            return lambda seen: not wanted.isdisjoint(seen.enabled)
         case AtMost(left, right):
             a, b = _number(tables, left), _number(tables, right)
-            return lambda sight: a(sight) <= b(sight)
+            return lambda seen: a(seen) <= b(seen)
         case Op("not", (part,)):
             inner = holds(tables, part)
-            return lambda sight: not inner(sight)
+            return lambda seen: not inner(seen)
         case Op("and" | "or" as operator, parts):
             found = [holds(tables, p) for p in parts]
             joined = all if operator == "and" else any
-            return lambda sight: joined(h(sight) for h in found)
+            return lambda seen: joined(h(seen) for h in found)
     raise ValueError(f"{f} is about more than one marking")
 
 
-def _number(tables: Tables, side: Constant | Tokens) -> Callable[[Sight], int]:
+def _number(tables: Tables, side: Constant | Tokens) -> Callable[[Observation], int]:
     if isinstance(side, Constant):
         value = side.value
-        return lambda sight: value
+        return lambda seen: value
     places = [p for name in side.places for p in tables.places[name]]
-    return lambda sight: sum(sight.tokens[p] for p in places)
+    return lambda seen: sum(seen.tokens[p] for p in places)
 
 
-def said_in_words(text: str, transitions: list[str]) -> Callable[[Sight], bool]:
+def said_in_words(text: str, transitions: list[str]) -> Callable[[Observation], bool]:
     """The same for the questions of the examinations without formulas, in the engine's own words.
 
     Args:
@@ -241,30 +241,30 @@ def said_in_words(text: str, transitions: list[str]) -> Callable[[Sight], bool]:
         transitions: ids, by number.
     """
     if text == "dead":
-        return lambda sight: not sight.enabled
+        return lambda seen: not seen.enabled
     value, rest = _read(text.split(), transitions)
     assert not rest
     return value
 
 
-def _read(words: list[str], transitions: list[str]) -> tuple[Callable[[Sight], bool], list[str]]:
+def _read(
+    words: list[str], transitions: list[str]
+) -> tuple[Callable[[Observation], bool], list[str]]:
     word, words = words[0], words[1:]
     if word == "not":
         inner, words = _read(words, transitions)
-        return (lambda sight: not inner(sight)), words
+        return (lambda seen: not inner(seen)), words
     n, words = int(words[0]), words[1:]
     if word == "enabled":
         wanted = frozenset(transitions[int(t)] for t in words[:n])
-        return (lambda sight: not wanted.isdisjoint(sight.enabled)), words[n:]
+        return (lambda seen: not wanted.isdisjoint(seen.enabled)), words[n:]
     if word == "sum":
         terms = [(int(words[2 * i]), int(words[2 * i + 1])) for i in range(n)]
         limit = int(words[2 * n])
-        return (lambda sight: sum(k * sight.tokens[p] for p, k in terms) <= limit), words[
-            2 * n + 1 :
-        ]
+        return (lambda seen: sum(k * seen.tokens[p] for p, k in terms) <= limit), words[2 * n + 1 :]
     found = []
     for _ in range(n):
         part, words = _read(words, transitions)
         found.append(part)
     joined = {"and": all, "or": any}[word]
-    return (lambda sight: joined(h(sight) for h in found)), words
+    return (lambda seen: joined(h(seen) for h in found)), words

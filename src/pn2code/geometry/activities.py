@@ -20,7 +20,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.contents import Contents, parts_of, spot
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
-from pn2code.geometry.rooms import Moment, Room, near, surface, swept, whole
+from pn2code.geometry.prisms import PartEvent, Prism, near, surface, swept, whole
 from pn2code.geometry.shown import Shown
 from pn2code.robot.belts import line_of, told_to_run, until_stop
 from pn2code.robot.clamps import (
@@ -60,7 +60,7 @@ class Activity:
         turns: the turntables that turn in it.
         may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
             is taken away, they do.
-        moments: when parts are handled in it, come to rest, or begin to move with a plate.
+        part_events: when parts are handled in it, come to rest, or begin to move with a plate.
         leans: the robots with parts in their tools on which clamps close in it: they must not move meanwhile.
         halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
@@ -76,7 +76,7 @@ class Activity:
     doubt: str = ""
     turns: frozenset[str] = frozenset()
     may_run: frozenset[str] = frozenset()
-    moments: tuple[Moment, ...] = ()
+    part_events: tuple[PartEvent, ...] = ()
     leans: frozenset[str] = frozenset()
     halfway: tuple[Contents, ...] = ()
 
@@ -171,7 +171,7 @@ class Doing:
         )
         turns: frozenset[str] = frozenset()
         may_run: frozenset[str] = frozenset()
-        moments: list[Moment] = []
+        part_events: list[PartEvent] = []
         leans: frozenset[str] = frozenset()
         halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
@@ -202,7 +202,7 @@ class Doing:
                     if done.fault:
                         legs = legs or [(self.planner.standing(stand), contents)]
                         break
-                    moments += self._beginning(plates, standing, contents)
+                    part_events += self._beginning(plates, standing, contents)
                 legs.append((leg, contents))
                 if leg.fault is not None:
                     done = replace(done, fault=leg.fault.message, command=None, doubt="")
@@ -220,10 +220,10 @@ class Doing:
                         break
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
-                    moments += self._handed_on(ran, (*others, stand), before, contents)
+                    part_events += self._handed_on(ran, (*others, stand), before, contents)
                 for held in closing(own, leg.start.q, leg.end.q):
                     kinds |= frozenset(self._cell.parts)
-                    moments.append(self._around_clamp(held))
+                    part_events.append(self._around_clamp(held))
                     near = self._nearest(held, contents, (*others, stand))
                     wrong = on_nothing(held, near)
                     done = replace(done, kinds=kinds)
@@ -243,10 +243,10 @@ class Doing:
                     tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
                 doing = _Handled(owner, command.handling, tcp, standing)
                 try:
-                    contents, doubt, moment = self._handle(doing, contents)
-                    moments += moment
+                    contents, doubt, event = self._handle(doing, contents)
+                    part_events += event
                 except PartFault as fault:
-                    moments += self._around(owner, command.handling, tcp)
+                    part_events += self._around(owner, command.handling, tcp)
                     done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
                     break
                 if doubt and not done.doubt:
@@ -258,7 +258,7 @@ class Doing:
             after=contents,
             turns=turns,
             may_run=may_run,
-            moments=tuple(moments),
+            part_events=tuple(part_events),
             leans=leans,
             halfway=tuple(halfway),
         )
@@ -275,29 +275,31 @@ class Doing:
         ]
         return nearest(self._cell, held, there)
 
-    def _around_clamp(self, held: Held) -> Moment:
+    def _around_clamp(self, held: Held) -> PartEvent:
         """Where a clamp closes on a part, whichever it is."""
         ground = Ground.of(self._cell)
         at = matrix_of(self._cell.places[held.clamp.place])[:3, 3]
         kinds = self._cell.parts.values()
         far = max((ground.radius(k.name) + k.tolerance for k in kinds), default=0.0)
-        return Moment((Room.around(at[None], far),), f"`{held.name}` closes on a part", _point(at))
+        return PartEvent(
+            (Prism.around(at[None], far),), f"`{held.name}` closes on a part", _point(at)
+        )
 
     def _beginning(
         self, plates: frozenset[str], standing: tuple[Stand, ...], contents: Contents
-    ) -> Iterator[Moment]:
+    ) -> Iterator[PartEvent]:
         """Plates begin to move: what others take along must not stand on them then, nor theirs on others."""
         parts = parts_of(contents, standing, 0.0)
         ground = Ground.of(self._cell)
         for plate in sorted(plates):
             own = ground.plates[plate]
             riders = parts.riders(plate)
-            rooms = [Room.around(ground.corners_of(p.kind.name, parts.world(p))) for p in riders]
+            prisms = [Prism.around(ground.corners_of(p.kind.name, parts.world(p))) for p in riders]
             frame = parts.plate_frame(plate)
-            tops = [*surface(own), *(Room.around(h.at(frame).corners) for h in own.hulls)]
+            tops = [*surface(own), *(Prism.around(h.at(frame).corners) for h in own.hulls)]
             says = f"`{plate}` begins to move"
             at = _point(frame[:3, 3])
-            yield Moment(tuple(rooms), says, at, goes="", surfaces=tuple(tops))
+            yield PartEvent(tuple(prisms), says, at, goes="", surfaces=tuple(tops))
 
     def _run_out(
         self, leg: Leg, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
@@ -324,7 +326,7 @@ class Doing:
         standing: tuple[Stand, ...],
         before: Contents,
         contents: Contents,
-    ) -> Iterator[Moment]:
+    ) -> Iterator[PartEvent]:
         """Where belts have taken parts, as if they had been put there; on those of their line they stand as before."""
         parts = parts_of(contents, standing, 0.0)
         moved = {p.name for p in before.parts.present.values() if p.plate in ran}
@@ -333,18 +335,18 @@ class Doing:
                 frame = parts.world(part)
                 on = frozenset(parts.plates_under(part) - ran)
                 says = f"`{min(ran)}` takes `{part.name}` along"
-                room = Room.around(Ground.of(self._cell).corners_of(part.kind.name, frame))
-                yield Moment((room,), says, _point(frame[:3, 3]), on, "onto")
+                prism = Prism.around(Ground.of(self._cell).corners_of(part.kind.name, frame))
+                yield PartEvent((prism,), says, _point(frame[:3, 3]), on, "onto")
 
-    def _room(self, kind: str, frame: Array) -> Room:
+    def _prism(self, kind: str, frame: Array) -> Prism:
         """Around a part, and its frame, and as far as it can be off from where it is looked for."""
-        return Room.around(Ground.of(self._cell).corners_of(kind, frame), self._tolerance)
+        return Prism.around(Ground.of(self._cell).corners_of(kind, frame), self._tolerance)
 
     @cached_property
     def _tolerance(self) -> float:
         return max((k.tolerance for k in self._cell.parts.values()), default=0.0)
 
-    def _around(self, owner: str, handling: Handling, tcp: Array | None) -> Iterator[Moment]:
+    def _around(self, owner: str, handling: Handling, tcp: Array | None) -> Iterator[PartEvent]:
         """Where a part cannot be handled: around that, whichever it is and however it lies.
 
         Tools stand on no turntable.
@@ -356,37 +358,37 @@ class Doing:
             far = 2.0 * Ground.of(self._cell).radius(kind.name) + self._tolerance
             says = f"`{owner}` {handling.effect} a part `{kind.name}`"
             at = frame[:3, 3]
-            yield Moment((Room.around(at[None], far),), says, _point(at))
+            yield PartEvent((Prism.around(at[None], far),), says, _point(at))
 
-    def _where(self, doing: _Handled, change: PartChange, before: Parts, after: Parts) -> Moment:
+    def _where(self, doing: _Handled, change: PartChange, before: Parts, after: Parts) -> PartEvent:
         """Where a part is handled, with what stands on it then."""
         handling, frame = doing.handling, matrix_of(change.pose)
-        rooms = [self._room(handling.part, frame)]
+        prisms = [self._prism(handling.part, frame)]
         if doing.tcp is not None:
-            rooms.append(Room.around(doing.tcp[None, :3, 3], self._tolerance))
+            prisms.append(Prism.around(doing.tcp[None, :3, 3], self._tolerance))
             tool = after.tool_of(doing.owner)
             if tool:
                 tip = self._cell.robot(doing.owner).of_tool(tool, doing.tcp)
-                rooms.append(Room.around(tip[None, :3, 3], self._tolerance))
+                prisms.append(Prism.around(tip[None, :3, 3], self._tolerance))
         for other in after.settled:
             kind = (after.present.get(other.part) or before.present[other.part]).kind
-            rooms.append(self._room(kind.name, matrix_of(other.pose)))
+            prisms.append(self._prism(kind.name, matrix_of(other.pose)))
         if handling.effect in ("takes", "removes"):
             plates, goes = {before.present[change.part].plate} - {""}, "from"
         else:
             plates, goes = after.plates_under(after.present[change.part]), "on"
         says = f"`{doing.owner}` {handling.effect} `{change.part}`"
-        return Moment(tuple(rooms), says, _point(frame[:3, 3]), frozenset(plates), goes)
+        return PartEvent(tuple(prisms), says, _point(frame[:3, 3]), frozenset(plates), goes)
 
     def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
         """Whether a place is so near to a turntable that it, or what stands on it, can come there when it moves."""
         point, far = where
         own = Ground.of(self._cell).plates[plate]
         some = {spot(p): p for c in contents for p in c.parts.present.values()}
-        rooms = [*swept(own, (), whole(own)), *surface(own), *self._anywhere(plate, some.values())]
-        return near([Room.around(point[None], far)], rooms)
+        prisms = [*swept(own, (), whole(own)), *surface(own), *self._anywhere(plate, some.values())]
+        return near([Prism.around(point[None], far)], prisms)
 
-    def _anywhere(self, plate: str, some: Iterable[Part]) -> list[Room]:
+    def _anywhere(self, plate: str, some: Iterable[Part]) -> list[Prism]:
         """Where a plate, as far as it can move, takes what stands on it, or on the belts of its line."""
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
@@ -422,11 +424,11 @@ class Doing:
         """What a plate does when it moves, for messages."""
         return Ground.of(self._cell).plates[plate].does
 
-    def moments_near(self, a: Activity, b: Activity) -> list[tuple[str, Moment]]:
+    def part_events_near(self, a: Activity, b: Activity) -> list[tuple[str, PartEvent]]:
         """What of one activity may depend on how far plates are that another one moves: the plate, and what."""
         out = []
         ground = Ground.of(self._cell)
-        for plate in sorted(a.turns | a.may_run) if b.moments else ():
+        for plate in sorted(a.turns | a.may_run) if b.part_events else ():
             own = ground.plates[plate]
             index = own.robot.index(own.axis.name)
             # Each with the plate on its way, in the end where it stays, ...
@@ -436,14 +438,14 @@ class Doing:
                 last = float(a.end.q[index])
                 ways.append((a.after, (last, last)))
             known: dict[str, Part] = {}
-            riders: list[Room] = []
-            plates: list[Room] = []
+            riders: list[Prism] = []
+            plates: list[Prism] = []
             for contents, way in ways:
                 on = contents.parts.riders(plate)
                 shapes = [ground.corners_of(p.kind.name, p.frame) for p in on]
-                rooms = swept(own, shapes, way)
-                plates += rooms[: len(rooms) - len(on)]
-                riders += rooms[len(rooms) - len(on) :]
+                prisms = swept(own, shapes, way)
+                plates += prisms[: len(prisms) - len(on)]
+                riders += prisms[len(prisms) - len(on) :]
                 known |= {spot(p): p for p in on}
             # ... and what others put there meanwhile, or what waits, anywhere.
             more = (*a.between, *b.between)
@@ -453,10 +455,10 @@ class Doing:
             else:
                 plates += swept(own, (), whole(own))
             riders += self._anywhere(plate, some.values())
-            for moment in b.moments:
-                rooms = [*riders, *plates, *(surface(own) if moment.goes else ())]
-                if near(moment.rooms, rooms) or near(moment.surfaces, riders):
-                    out.append((plate, moment))
+            for event in b.part_events:
+                prisms = [*riders, *plates, *(surface(own) if event.goes else ())]
+                if near(event.prisms, prisms) or near(event.surfaces, riders):
+                    out.append((plate, event))
         return out
 
     def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
@@ -491,7 +493,7 @@ class Doing:
 
     def _handle(
         self, doing: _Handled, contents: Contents
-    ) -> tuple[Contents, str, tuple[Moment, ...]]:
+    ) -> tuple[Contents, str, tuple[PartEvent, ...]]:
         """What an action does to a part, why it is not known that it can ("": it can), and where; tools are nowhere.
 
         Raises PartFault if it cannot.
@@ -505,7 +507,7 @@ class Doing:
         does = f"`{doing.owner}` {doing.handling.effect} `{change.part}`, or another one, or beside a turntable"
         after, doubt = self._one_of(found, faults, does)
         doubt = self._expect_unclamped(doing, change) or doubt
-        where: tuple[Moment, ...] = ()
+        where: tuple[PartEvent, ...] = ()
         if doing.handling.effect not in CHANGES:
             where = (self._where(doing, change, contents.parts, parts),)
         return after, self._expect_apart(doing, change, parts) or doubt, where

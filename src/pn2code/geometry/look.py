@@ -461,7 +461,7 @@ class Look:
             name = f"{self.options.stem}.geometry{layout}-{number}.trace.jsonl"
             self.runs[key] = write(
                 found.graph,
-                found.way(met.situation),
+                found.path_to(met.situation),
                 [e for e in met.elements if e >= 0],
                 self.options.folder / name,
                 self.options.initial,

@@ -4,7 +4,7 @@
     found.explore()
     found.activities[number]        # the first situation in which it is under way, ...
     found.pairs[(4, 9)]             # and the first one in which both are, of two arms
-    found.way(situation)            # the elements that lead there
+    found.path_to(situation)        # the elements that lead there
 
 Where an arm stands is where its last transition has left it; so a situation is a state of the cell, a place for each
 arm, and the parts. Of what is under way in one nobody knows how far it is. What a sensor that sees the scene cannot say
@@ -25,7 +25,7 @@ from pn2code.geometry.contents import Contents, spot
 from pn2code.geometry.graph import MOST_STATES, CellGraph
 from pn2code.geometry.legs import Leg, Stand
 from pn2code.geometry.part_names import like
-from pn2code.geometry.rooms import Moment
+from pn2code.geometry.prisms import PartEvent
 from pn2code.geometry.seeing import Scene, Seeing
 from pn2code.robot.parts import Part
 
@@ -124,7 +124,7 @@ class Situations:
         self._rider: dict[tuple[str, str], int] = {}
         self.why = graph.why
         self.doubts: dict[tuple[object, ...], Doubt] = {}
-        self._near: dict[tuple[int, int], list[tuple[str, Moment]]] = {}
+        self._near: dict[tuple[int, int], list[tuple[str, PartEvent]]] = {}
         names = {o.name: o.index for o in graph.partition.owners}
         self._numbers_of = {r: i for i, r in enumerate(self.robots)}
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
@@ -174,7 +174,7 @@ class Situations:
         """Whether runs stop at something impossible, so that nobody has gone through what would come after it."""
         return any(self.doing.activities[number].fault for number, _ in self.activities)
 
-    def way(self, situation: int) -> list[int]:
+    def path_to(self, situation: int) -> list[int]:
         """The elements that lead to a situation, from the start."""
         out = []
         while situation > 0:
@@ -509,7 +509,7 @@ class Situations:
     def _does_to_parts(self, one: tuple[int, Activity]) -> str:
         element, activity = one
         name = self._owner_names[self.graph.elements[element].owner]
-        said = dict.fromkeys(m.says for m in activity.moments if m.goes)
+        said = dict.fromkeys(m.says for m in activity.part_events if m.goes)
         if said:
             return ", ".join(said)
         kinds = " and ".join(f"`{k}`" for k in sorted(activity.kinds))
@@ -552,12 +552,12 @@ class Situations:
     def _expect_still(self, number: int, under_way: dict[int, Activity]) -> None:
         """Nobody handles a part on a turntable, or where that could take one, while another arm turns it."""
         for (e, a), (f, b) in itertools.permutations(under_way.items(), 2):
-            if not b.moments or not (a.turns or a.may_run):
+            if not b.part_events or not (a.turns or a.may_run):
                 continue
             if self.graph.elements[e].owner == self.graph.elements[f].owner:
                 continue
             if (a.number, b.number) not in self._near:
-                self._near[a.number, b.number] = self.doing.moments_near(a, b)
+                self._near[a.number, b.number] = self.doing.part_events_near(a, b)
             found = self._near[a.number, b.number]
             if found:
                 self._turning(number, (e, a), (f, b), found)
@@ -567,7 +567,7 @@ class Situations:
         number: int,
         mover: tuple[int, Activity],
         other: tuple[int, Activity],
-        found: list[tuple[str, Moment]],
+        found: list[tuple[str, PartEvent]],
     ) -> None:
         """One handles parts where a plate of another one moves."""
         (e, a), (f, _) = mover, other
@@ -576,17 +576,15 @@ class Situations:
             return
         sure = [(p, m) for p, m in found if p in m.plates and self.doing.moves_first(a, p)]
         is_sure = bool(sure)
-        plate, moment = (sure or found)[0]
-        x, y, z = (f"{1000.0 * v:.0f}" for v in moment.point)
+        plate, event = (sure or found)[0]
+        x, y, z = (f"{1000.0 * v:.0f}" for v in event.point)
         if is_sure:
             moves = self.doing.does(plate)
-            says = (
-                f"{moment.says} {moment.goes} `{plate}` while that {moves}, at ({x}, {y}, {z}) mm"
-            )
+            says = f"{event.says} {event.goes} `{plate}` while that {moves}, at ({x}, {y}, {z}) mm"
         else:
-            on = "can be" if plate in moment.plates else "can come"
+            on = "can be" if plate in event.plates else "can come"
             says = (
-                f"{moment.says} at ({x}, {y}, {z}) mm, where `{plate}`, or what it takes along, {on} meanwhile: what "
+                f"{event.says} at ({x}, {y}, {z}) mm, where `{plate}`, or what it takes along, {on} meanwhile: what "
                 "becomes of parts depends on how far that is"
             )
         key = ("turning", *(self.graph.elements[i].transition for i in (f, e)))

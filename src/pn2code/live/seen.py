@@ -110,7 +110,7 @@ class Eye:
         state = {"running": Life.RUNS, "finished": Life.FINISHED, "stopped": Life.STOPPED}.get(
             status.state, Life.NOT_STARTED
         )
-        if state is Life.RUNS and not self._lives(name, status, locked):
+        if state is Life.RUNS and not self._is_alive(name, status, locked):
             again = self._status(name)  # it may have said its last word meanwhile
             if again == status:
                 state = Life.DIED
@@ -118,7 +118,7 @@ class Eye:
                 return self._side(name, session, locked)
         return Side(state, status.reason, status.pid, status.session)
 
-    def _lives(self, name: str, status: StatusFile, locked: frozenset[int]) -> bool:
+    def _is_alive(self, name: str, status: StatusFile, locked: frozenset[int]) -> bool:
         """Whether the file's lock is held, as far as the system lists it, or the process is there."""
         try:
             inode = (self._folder / f"{name}.status").stat().st_ino

@@ -86,7 +86,7 @@ class Tail:
         else:
             self.lines.append(line)
 
-    def again(self) -> None:
+    def start_over(self) -> None:
         """From the beginning, with the next look."""
         self._begin()
 
@@ -116,7 +116,7 @@ class Tails:
             tail.look()
             yield tail
 
-    def again(self) -> None:
+    def start_over(self) -> None:
         """Everything once more: another session has begun."""
         for tail in self._tails.values():
-            tail.again()
+            tail.start_over()

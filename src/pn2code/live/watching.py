@@ -127,7 +127,7 @@ class Watching:
             return False
         if self._watched is not None:
             self._watched.close()
-        tails.again()
+        tails.start_over()
         are_first = all(_is_first(text) for text in seen.texts.values())
         self._is_from_start = self._looked and are_first
         self._is_running = seen.sides[self._parties[0]].state is Life.RUNS
@@ -141,7 +141,7 @@ class Watching:
     def _anew(self, before: Watched, tails: Tails) -> Watched:
         """The same session from its beginning: a trace has come whose steps were inferred already."""
         before.close()
-        tails.again()
+        tails.start_over()
         self._watched = watched = self._begun(before.session)
         watched.take(list(tails.look()))
         return watched

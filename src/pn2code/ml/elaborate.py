@@ -11,9 +11,8 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field, replace
 from functools import cache, partial
@@ -21,7 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pn2code.base.frozen import record
-from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
+from pn2code.diagnostics import Diagnostics, Origin, Severity, SourceText
 from pn2code.ml import codes, library
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
@@ -46,8 +45,9 @@ from pn2code.ml.parsing.parser import (
 )
 from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.ml.typing.annotations import Annotations
+from pn2code.ml.typing.border import at_border
 from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
-from pn2code.ml.typing.context import Context, TooDeepError, suggestion
+from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.declarations import Declarations
 from pn2code.ml.typing.declared import (
     break_modules,
@@ -58,29 +58,24 @@ from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
     BrokenType,
-    ConEntry,
-    HiddenEntry,
     Scope,
-    UnsupportedEntry,
     library_scope,
 )
 from pn2code.ml.typing.expressions import Expressions
-from pn2code.ml.typing.inference import ICon, TypeTooLargeError, from_type
+from pn2code.ml.typing.given_values import GivenValues
 from pn2code.ml.typing.inscriptions import Inscriptions, TypedCode
 from pn2code.ml.typing.instance_functions import InstanceFunctions
 from pn2code.ml.typing.names import Names
 from pn2code.ml.typing.patterns import Patterns
 from pn2code.ml.typing.repeats import Repeats
-from pn2code.ml.typing.used_files import UsedFiles
+from pn2code.ml.typing.used_files import UsedFiles, used_by
+from pn2code.ml.typing.variables import Variables
 
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 
 T = TypeVar("T")
 Examine = Callable[[s.Dec, Diagnostics], None]
 """Reports what is wrong with a declaration besides its types."""
-
-_RECURSION_LIMIT = 20_000
-"""Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
 
 
 def _nothing(dec: s.Dec, d: Diagnostics) -> None:
@@ -132,19 +127,18 @@ class Elaborator:
         self._d = d
         self._compute = compute
         self._files = UsedFiles(folder)
-        self._values = dict(values or {})
-        self._replaced: set[str] = set()
         self._ctx = Context(d, real_time, int_bits=int_bits)
         annotations = Annotations(self._ctx)
         patterns = Patterns(self._ctx, annotations)
         names = Names(self._ctx)
         self._expressions = Expressions(self._ctx, annotations, patterns, names)
         self._instances = InstanceFunctions(self._ctx)
+        self._given = GivenValues(self._ctx, self._expressions, values or {}, self._parse)
         self._declare = Declarations(self._ctx, annotations, patterns, self._expressions, names)
         self._fixities: Fixities = dict(INFIX)
         self._made: list[core.Dec] = []
-        self._variables: dict[str, Symbol] = {}
-        self._variable_scope = Scope(self._ctx.top)
+        self._library_top = Scope(library_scope())
+        self._variables = Variables(self._ctx, self._library_top)
         self._constants: dict[int, Constant] = {}
         self._bodies: dict[int, core.Exp] = {}
         self._computing = Computing(self._constants, self._bodies)
@@ -152,12 +146,11 @@ class Elaborator:
             self._ctx,
             self._expressions,
             patterns,
-            self._variable_scope,
+            self._variables.scope,
             partial(self._fold, fixed=True),
         )
         self._repeats = Repeats()
         self._library: set[str] = set()
-        self._library_top = Scope(library_scope())
         self._from_library: set[str] = set()
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
 
@@ -170,8 +163,8 @@ class Elaborator:
         colset, datatypes = self._colsets.declare(spec)
         self._made += datatypes
         if colset is not None:
-            self._redeclared(colset)
-        self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
+            self._variables.redeclared(colset)
+        self._variables.hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
     @property
@@ -186,47 +179,7 @@ class Elaborator:
     def variables(self, names: Sequence[str], colset_name: str, origin: Origin) -> None:
         """`var names : colset_name`."""
         self._repeats.clear()
-        colset = self._ctx.colsets.get(colset_name)
-        if colset_name not in self._ctx.colsets:
-            self._ctx.errors += 1
-            self._d.error(
-                codes.UNKNOWN_COLOUR_SET,
-                f"there is no colour set `{colset_name}`",
-                origin,
-                hint=suggestion(colset_name, self._ctx.colsets)
-                or self._ctx.announced_hint(colset_name),
-            )
-        self._ctx.net_variables.update(names)
-        for name in names:
-            if colset is None:
-                self._variable_scope.values[name] = BrokenEntry()
-                self._variables.pop(name, None)
-                continue
-            declared = self._ctx.top.values.get(name)
-            if declared is self._library_top.values.get(name):
-                declared = None  # what the library has hides no variable
-            if isinstance(declared, Binding | ConEntry) and name not in self._variables:
-                self._clash(name, origin, "inscriptions mean the value, which was declared first")
-                continue
-            old = self._variables.get(name)
-            if old is None:
-                self._variable(name, colset)
-            elif old.colset is not None and old.colset != colset:
-                self._d.warning(
-                    codes.VARIABLE_CLASH,
-                    f"variable `{name}` of colour set `{old.colset.name}` is declared again, "
-                    f"now of `{colset.name}`",
-                    origin,
-                    hint="rename one of them: as in CPN Tools, the first declaration counts everywhere",
-                )
-
-    def _variable(self, name: str, colset: Colset) -> None:
-        """A variable of the net in arcs, guards and code segments."""
-        symbol = self._ctx.fresh_symbol(name, colset.type, colset)
-        self._variables[name] = symbol
-        self._variable_scope.values[name] = Binding(
-            name, from_type(colset.type, []), symbol=symbol, colset=colset
-        )
+        self._variables.declare(names, colset_name, origin)
 
     def _tables(self) -> tuple[dict[str, Any], ...]:
         """What is declared for the whole net, by name."""
@@ -237,8 +190,8 @@ class Elaborator:
             top.types,
             *modules,
             self._ctx.colsets,
-            self._variables,
-            self._variable_scope.values,
+            self._variables.symbols,
+            self._variables.scope.values,
         )
 
     @contextmanager
@@ -260,34 +213,7 @@ class Elaborator:
             for name, x in names.items():
                 if table.get(name) is x:
                     del table[name]
-        for name, symbol in list(self._variables.items()):
-            if symbol.colset is not None and symbol.colset.name not in self._ctx.colsets:
-                del self._variables[name]
-                self._variable_scope.values.pop(name, None)
-
-    def _redeclared(self, colset: Colset) -> None:
-        """Variables get the colour set that has their colour set's name in the end, as in CPN Tools."""
-        for name, symbol in list(self._variables.items()):
-            old = symbol.colset
-            known = isinstance(self._variable_scope.values.get(name), Binding)
-            if known and old is not None and old.name == colset.name and old != colset:
-                self._variable(name, colset)
-
-    def _hide(self, names: Set[str], at: Origin | Span) -> None:
-        """Variables of the net that have become constructors: CPN Tools refuses the transitions that use them."""
-        for name in sorted(names & self._variables.keys()):
-            if isinstance(self._ctx.top.values.get(name), ConEntry):
-                self._variable_scope.values[name] = HiddenEntry()
-                self._clash(name, at, "the variable, which was declared first, cannot be used")
-
-    def _clash(self, name: str, at: Origin | Span, meaning: str) -> None:
-        """What is declared first counts in arcs, guards and code segments, as in CPN Tools."""
-        self._d.warning(
-            codes.VALUE_CLASH,
-            f"`{name}` is both a variable of the net and a value or function: {meaning}",
-            at,
-            hint="rename one of them",
-        )
+        self._variables.forget_lost()
 
     def declarations(self, text: SourceText, examine: Examine = _nothing) -> None:
         """An `ml` element: any number of CPN ML declarations.
@@ -321,12 +247,12 @@ class Elaborator:
             break_modules(dec, self._ctx.top)
             return
         changed, self._fixities = resolved
-        used = self._used(changed)
+        used = used_by(changed, self._ctx.scope)
         if used is not None:
             self._use(used)
             return
-        if isinstance(changed, s.ValDec) and self._values:
-            changed = self._replace_values(changed)
+        if isinstance(changed, s.ValDec):
+            changed = self._given.replace_in(changed)
         before = self._ctx.errors
         self._ctx.tainted = False
         asks = self._instances.asks(changed)
@@ -348,15 +274,8 @@ class Elaborator:
                     f"`{name}` cannot be declared: it would be a member of a structure",
                     dec.span,
                 )
-        for name in sorted(declared_by(changed) & self._variables.keys()):
-            if isinstance(self._ctx.top.values.get(name), Binding):
-                self._clash(
-                    name,
-                    dec.span,
-                    "inscriptions mean the variable, which was declared first; "
-                    "initial markings and declarations mean the value",
-                )
-        self._hide(declared_by(changed), dec.span)
+        self._variables.meet(declared_by(changed), dec.span)
+        self._variables.hide(declared_by(changed), dec.span)
         made = build()
         if not asks:
             self._made += made
@@ -390,44 +309,6 @@ class Elaborator:
         for name in types:
             self._ctx.top.types[name] = BrokenType()
 
-    def _replace_values(self, dec: s.ValDec) -> s.ValDec:
-        """`val NAME = ..` with the value that the caller has given for NAME; its type must stay."""
-        bindings = []
-        for b in dec.bindings:
-            pattern = b.pattern.pattern if isinstance(b.pattern, s.TypedPat) else b.pattern
-            if isinstance(pattern, s.NamePat) and pattern.name in self._values:
-                name = pattern.name
-                self._replaced.add(name)
-                origin = replace(self._given_at(name), part="declaration")
-                if not origin.line:
-                    origin = replace(origin, line=1, column=1)
-                given = self._parse(SourceText(self._values[name], origin))
-                if given is not None and self._same_type(b.value, given, name):
-                    b = replace(b, value=given)
-            bindings.append(b)
-        return replace(dec, bindings=tuple(bindings))
-
-    def _given_at(self, name: str) -> Origin:
-        """Where the value for `val NAME` stands."""
-        given = self._values[name]
-        file = given.origin if isinstance(given, PlacedText) else Origin("command line")
-        return replace(file, element=f"value `{name}`")
-
-    def _same_type(self, old: s.Exp, new: s.Exp, name: str) -> bool:
-        quiet, self._ctx.d = self._ctx.d, Diagnostics()
-        errors = self._ctx.errors
-        try:
-            t = self._expressions.infer(old).type
-            failed = self._ctx.d.has_errors
-        finally:
-            self._ctx.d = quiet
-            self._ctx.errors = errors
-        self._ctx.open_records.clear()
-        if failed:
-            return False  # the net's own value is wrong, which is reported when it is declared
-        self._expressions.check(new, t, f"value given for `{name}`")
-        return self._ctx.errors == errors
-
     def use(self, text: SourceText) -> None:
         """`use text`: the declarations of a file; the text is CPN ML for its name."""
         self._border(text, lambda: self._use_text(text))
@@ -436,22 +317,6 @@ class Elaborator:
         name = self._parse(text)
         if name is not None:
             self._use(name)
-
-    def _used(self, dec: s.Dec) -> s.Exp | None:
-        """The argument of `use e` or `val _ = use e`; None if the declaration is not of this form."""
-        match dec:
-            case s.ExpDec(exp=e):
-                pass
-            case s.ValDec(bindings=(s.ValBinding(pattern=s.WildPat() | s.RecordPat(), value=e),)):
-                pass
-            case _:
-                return None
-        builtin = isinstance(self._ctx.scope.value("use"), UnsupportedEntry)
-        match e:
-            case s.ApplyExp(function=s.NameExp(name="use"), argument=argument) if builtin:
-                return argument
-            case _:
-                return None
 
     def _use(self, written: s.Exp) -> None:
         found = self._inscriptions.plain(written, (STRING,), "name of a file")
@@ -492,19 +357,16 @@ class Elaborator:
             self._ctx.top.values["ref"] = with_reference
 
     def program(self) -> Program:
-        """All declarations so far. Meaningful when no error was reported."""
-        for name in sorted(self._values.keys() - self._replaced):
-            known = [n for n, e in self._ctx.top.values.items() if isinstance(e, Binding)]
-            self._d.error(
-                codes.UNKNOWN_VALUE,
-                f"the net declares no value `{name}` that could be replaced",
-                self._given_at(name),
-                hint=suggestion(name, known),
-            )
+        """All declarations of the net. Meaningful when no error was reported."""
+        self._given.refuse_unknown()
+        return self._so_far()
+
+    def _so_far(self) -> Program:
+        """All declarations so far."""
         return Program(
             declarations=tuple(self._made),
             colsets={n: c for n, c in self._ctx.colsets.items() if c is not None},
-            variables=dict(self._variables),
+            variables=dict(self._variables.symbols),
             datatypes=self.datatypes(),
             globals={
                 n: e.symbol
@@ -702,7 +564,7 @@ class Elaborator:
         why = ""
         if value is None and self._compute is not None:
             real_time = self._ctx.real_time
-            computed = self._compute(self.program(), exp, fixed=fixed, real_time=real_time)
+            computed = self._compute(self._so_far(), exp, fixed=fixed, real_time=real_time)
             value, why = computed.value, computed.why
         if isinstance(value, int | float | str):
             return Computed(value)
@@ -722,7 +584,7 @@ class Elaborator:
         """The value of an initial marking, by the evaluator that was lent."""
         if self._compute is None:
             return Computed(None)
-        return self._compute(self.program(), exp, fixed=False, real_time=self._ctx.real_time)
+        return self._compute(self._so_far(), exp, fixed=False, real_time=self._ctx.real_time)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""
@@ -766,42 +628,6 @@ class Elaborator:
             self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities = before
 
     def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
-        """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""
+        """Runs one text's elaboration, after what it mentions of the library."""
         self.with_library(text)
-        limit = sys.getrecursionlimit()
-        sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
-        self._ctx.unifier.start()
-        try:
-            return work()
-        except TooDeepError:
-            return None
-        except TypeTooLargeError:
-            end = min(len(text.text), 40)
-            self._d.error(
-                codes.TYPE_TOO_LARGE,
-                "the types in this text become too large",
-                Span(text, 0, end),
-                hint="give arguments a type: `fun f (x : INT) = ..`",
-            )
-            return None
-        except RecursionError:
-            end = min(len(text.text), 40)
-            self._d.error(
-                codes.TOO_DEEP,
-                "this is nested too deeply",
-                Span(text, 0, end),
-                hint="give parts of it a name with `val` or `let`",
-            )
-            return None
-        finally:
-            sys.setrecursionlimit(limit)
-            self._ctx.scope = self._ctx.top
-            self._ctx.unifier.level = 0
-            self._ctx.depth = 0
-            self._ctx.unknown.clear()
-            self._ctx.tyvars.clear()
-            self._ctx.open_records.clear()
-            for meta in self._ctx.unifier.pending:
-                if meta.ref is None and meta.among:
-                    meta.ref = ICon(meta.among[0])
-            self._ctx.unifier.pending.clear()
+        return at_border(self._ctx, text, work)

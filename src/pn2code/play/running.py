@@ -85,7 +85,7 @@ def run(session: Session, wish: Wish, tell: Tell) -> Ended:
         Trouble: it cannot be made, or the net raises an exception; the steps before it have been made.
     """
     session.stop.clear()
-    why_not = _obstacle(session, wish)
+    why_not = _why_not_compiled(session, wish)
     if wish.engine == "compiled" and why_not:
         raise Trouble(f"the compiled simulator cannot make this run: {why_not}")
     is_compiled = wish.engine == "compiled" or (
@@ -167,7 +167,7 @@ def _is_beyond(session: Session, until: float | None) -> bool:
 # --- by the compiled simulator ---------------------------------------------------------------------
 
 
-def _obstacle(session: Session, wish: Wish) -> str:
+def _why_not_compiled(session: Session, wish: Wish) -> str:
     """Why the compiled simulator cannot make a run; "" if it can."""
     start, initial, obstacle = session.run
     if wish.condition is not None or wish.breakpoints:

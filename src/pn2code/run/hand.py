@@ -34,8 +34,8 @@ MOST_NEXT = 20
 WAYS = ("ask", "own", "always")
 
 
-class Wishes(Protocol):
-    """Where wishes come from."""
+class People(Protocol):
+    """Those who watch a run, and what they ask for."""
 
     def present(self) -> int:
         """How many people are there."""
@@ -109,7 +109,7 @@ class Hand:
         self,
         choices: Mapping[Key, Choice],
         channels: Mapping[str, tuple[str, ...]],
-        wishes: Wishes,
+        wishes: People,
         patience: float,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:

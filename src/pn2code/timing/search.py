@@ -138,9 +138,9 @@ class Search:
         ending = self.endings.setdefault(tuple(places[p].name for p in finals), Ending())
         ending.nodes.append(node)
         if ending.best is None:
-            ending.best = TimedPath(now, tuple(self.way(node)))
+            ending.best = TimedPath(now, tuple(self.path_to(node)))
 
-    def way(self, node: int) -> list[tuple[int, int]]:
+    def path_to(self, node: int) -> list[tuple[int, int]]:
         """The first way to a situation: node and mark of each arc."""
         out = []
         while node > 0:

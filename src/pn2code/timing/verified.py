@@ -291,7 +291,7 @@ class _Judge:
     ) -> Answer:
         """With the run of the longest wait, or of one that has no end."""
         search = one.search
-        elements = [x for _, x in search.way(wait.before) if x >= 0]
+        elements = [x for _, x in search.path_to(wait.before) if x >= 0]
         elements += [x for _, x in wait.way if x >= 0]
         name = run_names(p.name for p in self.asked.properties)[a.about.name]
         file = self.folder / f"{stem(self.opened)}.{name}.trace.jsonl"

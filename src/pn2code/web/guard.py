@@ -54,7 +54,7 @@ class Guard:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        why = self._obstacle(scope)
+        why = self._refusal(scope)
         if why is not None:
             await _refuse(scope, send, *why)
             return
@@ -62,7 +62,7 @@ class Guard:
         inside = {**scope, "path": f"/{rest}", "raw_path": f"/{rest}".encode(), "root_path": ""}
         await self._app(inside, receive, _with_headers(send))
 
-    def _obstacle(self, scope: Scope) -> tuple[int, str] | None:
+    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
         """Why a request is refused: status and reason."""
         headers = _headers(scope)
         host = headers.get("host", [])

@@ -133,3 +133,15 @@ def test_bounds_of_unlimited_integers() -> None:
         """
     )
     assert (net.program.colsets["C"].low, net.program.colsets["C"].high) == (-1, 5)
+
+
+def test_a_value_is_replaced_that_is_declared_after_a_computed_bound() -> None:
+    """The evaluator computes the bound from the declarations before it; what is declared later is not missed there."""
+    text = (
+        "net N\n  colset C = int with 0..(hd [] handle _ => 3);\n  val n = 3;\n  place P : C = 1`n"
+    )
+    net = flat(text, {"n": "2"})
+    assert net.program.colsets["C"].high == 3
+    assert net.places[0].initial is not None
+    [error] = diagnose(text, {"m": "2"}).errors
+    assert error.message == "the net declares no value `m` that could be replaced"

@@ -247,7 +247,7 @@ def test_what_a_belt_takes_onto_another_one_is_handled_there() -> None:
     for way, onto in ((0.5, set()), (0.69, {"feeder/away"})):
         found = doing.of("feeder", (run(way),), home, doing.start, (home,))
         assert not found.fault
-        begins, ends = found.moments
+        begins, ends = found.part_events
         assert begins.goes == "" and round(ends.point[1] + 1.7, 6) == round(0.6 + way, 6)
         assert ends.plates == onto
 

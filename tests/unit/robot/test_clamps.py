@@ -148,7 +148,7 @@ def test_it_does_not_close_on_what_is_on_the_way() -> None:
 def test_over_all_states_it_closes_on_a_part() -> None:
     found = closed(cell_of(), 0.0598)
     assert not found.fault and not found.doubt
-    assert found.kinds == {"blank"} and found.moments and not found.leans
+    assert found.kinds == {"blank"} and found.part_events and not found.leans
     away = closed(cell_of(at="{ y = -0.9, z = 0.575 }"), 0.12, 0.0598)
     assert away.is_part and away.fault.startswith(
         "`mill/vice` closes on nothing: no part is at `inVice`; "

@@ -14,6 +14,8 @@ from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.scene import load
 from pn2code.robot.tool_contacts import end_links
 
+pytest.importorskip("eaik")  # the solver of the arm, which does not come with every Python
+
 ARM = Path(model.__file__).parent / "models" / "ur5e.urdf"
 
 

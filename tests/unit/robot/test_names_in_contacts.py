@@ -11,6 +11,8 @@ import pytest
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot.scene import load
 
+pytest.importorskip("eaik")  # the solver of the arm, which does not come with every Python
+
 
 @pytest.mark.parametrize("name", ["*", "shelf[1]", "a?"])
 def test_a_thing_with_signs_of_patterns(name: str, tmp_path: Path) -> None:

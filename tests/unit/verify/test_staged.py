@@ -8,7 +8,7 @@ from helpers.netbuilder import cpn
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict.opened import read
-from pn2code.verify.controller.running import staged
+from pn2code.verify.controller.staged_channels import staged
 
 # A tells B and the supervisor in one transition; later it sends the supervisor the same data with their flag.
 NET = """net cell

@@ -9,7 +9,7 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "../state/explore_local.h"
+#include "explore_local.h"
 #include "explore_counts.h"
 #include "explore_successors.h"
 #include "../explore_bounds.h"

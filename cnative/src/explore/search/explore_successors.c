@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * explore_successors.c - what is enabled in a state, and what becomes of it.
  */
-#include "../state/explore_local.h"
+#include "explore_local.h"
 #include "explore_successors.h"
 #include "../state/explore_roots.h"
 #include "explore_counts.h"

@@ -14,6 +14,8 @@ from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml import codes
+from pn2code.ml.parsing import syntax as s
+from pn2code.ml.typing.environment import Scope, UnsupportedEntry
 
 MAX_BYTES = 4_000_000
 """Largest file that is read."""
@@ -21,6 +23,23 @@ MAX_FILES = 200
 """Files that one net uses, repetitions counted."""
 MAX_NESTING = 20
 """Files that use files."""
+
+
+def used_by(dec: s.Dec, scope: Scope) -> s.Exp | None:
+    """The argument of `use e` or `val _ = use e`; None if the declaration is not of this form."""
+    match dec:
+        case s.ExpDec(exp=e):
+            pass
+        case s.ValDec(bindings=(s.ValBinding(pattern=s.WildPat() | s.RecordPat(), value=e),)):
+            pass
+        case _:
+            return None
+    builtin = isinstance(scope.value("use"), UnsupportedEntry)
+    match e:
+        case s.ApplyExp(function=s.NameExp(name="use"), argument=argument) if builtin:
+            return argument
+        case _:
+            return None
 
 
 class UsedFiles:

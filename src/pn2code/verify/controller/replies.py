@@ -29,7 +29,7 @@ from pn2code.net.dump import text_of
 from pn2code.robot_scripts.machine import Machine
 from pn2code.verify.controller.commands import lasts
 from pn2code.verify.controller.durations import MOST_VALUES, NOTHING, Durations, Known
-from pn2code.verify.controller.rounds import Turns, Way, turns
+from pn2code.verify.controller.rounds import ControlStep, Turns, turns
 from pn2code.verify.controller.stops import NoProgramError, machine
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
@@ -139,7 +139,7 @@ class Replies:
 class _Quiet:
     """A step without a message: its places and tokens, what it takes, and its transition."""
 
-    way: Way
+    way: ControlStep
     time: Time
     name: str
 
@@ -230,7 +230,9 @@ class _Silence:
                     begins[there] = Time.longest((begins.get(there, Time()), after))
                 else:
                     put = None if term.whole else dict(outcome.puts)[there]
-                    quiet.append(_Quiet(Way(here, there, term.value, put), acts + after, t.short))
+                    quiet.append(
+                        _Quiet(ControlStep(here, there, term.value, put), acts + after, t.short)
+                    )
         at = dict(begins)
         for turn in range(len(self.program.control) + 1):
             changed = False

@@ -22,7 +22,7 @@ _Path = tuple[str, ...]
 
 
 @frozen
-class Way:
+class ControlStep:
     """A step from one control place to another one.
 
     Args:
@@ -60,7 +60,7 @@ class Turns:
     by: tuple[int, ...]
 
 
-def turns(ways: Sequence[Way], colsets: Mapping[int, Colset]) -> Turns | None:
+def turns(ways: Sequence[ControlStep], colsets: Mapping[int, Colset]) -> Turns | None:
     """Of steps that lead round among places; None: nothing is counted that ends it.
 
     Args:
@@ -89,7 +89,7 @@ def _levels(colset: Colset, path: _Path) -> Iterator[_Level]:
             yield _Level(path, low, c.high)
 
 
-def _counted(ways: Sequence[Way], levels: Mapping[int, _Level]) -> Turns | None:
+def _counted(ways: Sequence[ControlStep], levels: Mapping[int, _Level]) -> Turns | None:
     steps = []
     for way in ways:
         before = _form(_part(way.taken, levels[way.here].path))

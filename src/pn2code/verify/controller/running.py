@@ -54,6 +54,8 @@ from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.poses import Bad
 from pn2code.verify.controller.refusals import refusing
+from pn2code.verify.controller.rival_transitions import meek
+from pn2code.verify.controller.staged_channels import staged
 from pn2code.verify.controller.stops import NoProgramError, machine, waits
 from pn2code.verify.controller.unanswered import unanswered
 from pn2code.verify.controller.unsure import Conditions
@@ -762,42 +764,6 @@ class _Composer:
             self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
 
 
-def staged(partition: Partition) -> Iterator[Channel]:
-    """Channels of robots whose messages come out in an order that somebody could notice, in that order.
-
-    What is written after a message that comes out later than it is put has to come out later still, wherever the two
-    are put together.
-    """
-    channels = {c.place: c for c in partition.channels}
-    order = [c.place for c in partition.channels]
-    found: set[int] = set()
-    together: list[list[int]] = []
-    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
-        put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
-        if owner == SUPERVISOR or len(put) < 2:
-            continue
-        together.append(sorted(put, key=order.index))
-        if len({channels[place].reader for place in put}) > 1 or _acts_early(partition, put):
-            found |= put
-    size = -1
-    while size < len(found):
-        size = len(found)
-        for row in together:
-            after = next((i for i, place in enumerate(row) if place in found), len(row))
-            found.update(row[after:])
-    return (c for c in partition.channels if c.place in found)
-
-
-def _acts_early(partition: Partition, put: set[int]) -> bool:
-    """Whether somebody needs one of these messages, and not all that are written after it."""
-    order = [c.place for c in partition.channels if c.place in put]
-    for t in partition.net.transitions:
-        taken = {a.place for a in t.arcs if a.kind is ArcKind.INPUT and a.place in put}
-        if taken and not taken.issuperset(order[min(map(order.index, taken)) :]):
-            return True
-    return False
-
-
 def _takes_early(t: FlatTransition, place: int) -> bool:
     """Whether a transition takes a token of the place before its time."""
     return any(
@@ -807,43 +773,3 @@ def _takes_early(t: FlatTransition, place: int) -> bool:
         for a in t.arcs
         if a.kind is not ArcKind.OUTPUT
     )
-
-
-def meek(partition: Partition) -> Iterator[int]:
-    """Transitions of robots that wait for a message which another one, that comes later in order, does not need."""
-    for t, rivals in _rivals(partition):
-        if any(needed - others for needed, others in rivals):
-            yield t
-
-
-def hasty(partition: Partition) -> Iterator[tuple[int, bool]]:
-    """Transitions of robots that another one may overtake while the script looks for a third one's messages.
-
-    The third one, the last in order, has ended the wait. Then the script asks for the first one, of which a message is
-    missing; now this comes, and all that the second one needs; and the script asks for that one. With each, whether
-    the second one needs a message of it as well, so that all others may have been there for long.
-    """
-    for t, rivals in _rivals(partition):
-        for i, (needed, second) in enumerate(rivals):
-            if any(needed - third and second - third for _, third in rivals[i + 1 :]):
-                yield t, bool(needed & second)
-
-
-def _rivals(partition: Partition) -> Iterator[tuple[int, list[tuple[set[int], set[int]]]]]:
-    """Transitions of robots, and for each that competes with it and comes later: the messages of both."""
-    net = partition.net
-    channels = {c.place for c in partition.channels}
-
-    def inputs(t: FlatTransition, which: bool) -> set[int]:
-        return {
-            a.place
-            for a in t.arcs
-            if a.kind in (ArcKind.INPUT, ArcKind.BOTH) and (a.place in channels) is which
-        }
-
-    for owner in range(1, len(partition.owners)):
-        own = [t for t in net.transitions if partition.transition_owner[t.index] == owner]
-        own.sort(key=lambda t: (t.priority, t.index))
-        for i, t in enumerate(own):
-            rivals = [u for u in own[i + 1 :] if inputs(t, False) & inputs(u, False)]
-            yield t.index, [(inputs(t, True), inputs(u, True)) for u in rivals]

@@ -250,16 +250,22 @@ class _Reach:
 
 
 @record
-class _Touching:
+class Touching:
     """The transitions at a place, each with what it does there."""
 
     uses: dict[int, Use] = field(default_factory=dict)
 
     def putting(self) -> Iterator[int]:
+        """Those that put tokens."""
         return (t for t, u in self.uses.items() if u.puts)
 
     def removing(self) -> Iterator[int]:
+        """Those that take tokens, or clear the place."""
         return (t for t, u in self.uses.items() if u.takes or u.clears)
+
+    def changing(self) -> Iterator[int]:
+        """Those after which it may hold something else."""
+        return (t for t, u in self.uses.items() if u.changes)
 
 
 class _Relation:
@@ -270,7 +276,7 @@ class _Relation:
         datatypes = net.program.datatypes
         self.signed = [may_hold_reals(p.colset.type, datatypes) for p in net.places]
         self.uses: list[dict[int, Use]] = []
-        self.at = [_Touching() for _ in net.places]
+        self.at = [Touching() for _ in net.places]
         self.reach = [_reach(t, effects) for t in net.transitions]
         self.writers = [i for i, r in enumerate(self.reach) if r.writes]
         for t in net.transitions:

@@ -52,14 +52,19 @@ are timed ones and those that change references.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import field
 
-from pn2code.base.frozen import frozen, record
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.semantics.evaluation.references import occurring
 from pn2code.structure.relations import Relations, relations
-from pn2code.verify.exploring.dependency import MOST_TRANSITIONS, OUTSIDE, Use, raises_nothing
+from pn2code.verify.exploring.dependency import (
+    MOST_TRANSITIONS,
+    OUTSIDE,
+    Touching,
+    Use,
+    raises_nothing,
+)
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.table_rows import END, Reason, listed, reason_rows, row
 
@@ -159,22 +164,6 @@ def _check(net: FlatNet) -> None:
             raise NotPossibleError(f"transition `{t.name}` {why.value}")
 
 
-@record
-class _At:
-    """What transitions do at a place."""
-
-    uses: dict[int, Use] = field(default_factory=dict)
-
-    def putting(self) -> Iterator[int]:
-        return (t for t, u in self.uses.items() if u.puts)
-
-    def removing(self) -> Iterator[int]:
-        return (t for t, u in self.uses.items() if u.takes or u.clears)
-
-    def changing(self) -> Iterator[int]:
-        return (t for t, u in self.uses.items() if u.changes)
-
-
 class _Relation:
     def __init__(
         self,
@@ -187,7 +176,7 @@ class _Relation:
         self.net = net
         self.owners = owners
         self.known = known
-        self.at = [_At() for _ in net.places]
+        self.at = [Touching() for _ in net.places]
         self.uses: list[dict[int, Use]] = []
         for t in net.transitions:
             own: dict[int, Use] = {}

@@ -21,7 +21,7 @@ static const char EMPTY[] =
     "0\n"; /* the content of a channel without a message; all that is ever written to an incoming one */
 
 static const uint64_t NS_PER_MS = 1000000U;
-static const uint64_t STALE_PEER_WAIT_MS = 1000U; /* a robot of an earlier run notices within 100 ms that we are new */
+enum { STALE_PEER_WAITS = 100 }; /* of 10 ms: a robot of an earlier run notices within 100 ms that we are new */
 
 typedef struct file_channel {
     bool dirty;        /* may have changed since the last look */
@@ -505,14 +505,15 @@ static bool take_lock(void)
 /* Robots of an earlier run have to be gone: they might act on what we write. */
 static bool await_stale_peers(void)
 {
-    const uint64_t begin = pn_port_now();
+    uint32_t waits = 0U; /* the clock goes on where a busy machine lets neither us nor the robot run */
     for (uint32_t i = 0U; i < s_files.cell->peer_count; i++) {
         char name[NAME_SIZE];
         bool exists = false;
         bool locked = false;
         status_name(s_files.cell->peer[i].name, name, sizeof name);
         int error = pn_port_probe(s_files.directory, name, &exists, &locked);
-        while (locked && (pn_port_now() - begin < STALE_PEER_WAIT_MS * NS_PER_MS) && (pn_port_stop_signal() == 0)) {
+        while (locked && (waits < (uint32_t)STALE_PEER_WAITS) && (pn_port_stop_signal() == 0)) {
+            waits++;
             (void)pn_port_wait(-1, 10U * NS_PER_MS);
             error = pn_port_probe(s_files.directory, name, &exists, &locked);
         }

@@ -125,7 +125,7 @@ static SIM_INLINE void sim_forget_touched(sim_t *sim, uint32_t transition)
 
 /* --- search ------------------------------------------------------------------------------------------------------- */
 
-static SIM_INLINE bool sim_stop_at_first(void *user, uint32_t transition, const void *binding)
+static inline bool sim_stop_at_first(void *user, uint32_t transition, const void *binding)
 {
     (void)transition;
     (void)binding;
@@ -163,7 +163,7 @@ static SIM_INLINE void *sim_next_kept(sim_search_t *search, size_t size)
     return fits ? at : NULL;
 }
 
-static SIM_INLINE bool sim_pick(void *user, uint32_t transition, const void *binding)
+static inline bool sim_pick(void *user, uint32_t transition, const void *binding)
 {
     sim_search_t *search = user;
     (void)transition;
@@ -182,7 +182,7 @@ static bool sim_find(void *user, uint32_t transition, const void *binding)
 }
 
 #ifdef PN_NET_SOURCE
-static SIM_INLINE bool sim_count(void *user, uint32_t transition, const void *binding)
+static inline bool sim_count(void *user, uint32_t transition, const void *binding)
 {
     (void)transition;
     (void)binding;
@@ -297,7 +297,7 @@ bool sim_fire(sim_t *sim, uint32_t transition)
 
 /* A binding is kept by assignment: the compiler then leaves out what it need not put together first. */
 #define SIM_TRANSITION(index, code, is_plain)                                                                   \
-    static SIM_INLINE bool sim_keep_##index(void *user, uint32_t transition, const void *binding)               \
+    static inline bool sim_keep_##index(void *user, uint32_t transition, const void *binding)                   \
     {                                                                                                           \
         code##_binding_t *const at = sim_next_kept(user, sizeof *at);                                           \
         (void)transition;                                                                                       \

@@ -1,11 +1,11 @@
 """Where things can be: upright prisms around all of their places, to tell what has nothing to do with each other.
 
-    room = Room.around(corners)                 # of a part that stands
+    prism = Prism.around(corners)               # of a part that stands
     plate = swept(plate, riders, (0.0, 0.7))    # all that a turntable, belt or lift takes along, and itself
-    room.is_near(plate)                         # so near that one could come to stand on the other
+    prism.is_near(plate)                        # so near that one could come to stand on the other
 
-A room is a convex polygon, with a rim around it, between two heights. What is in two rooms that are further apart than
-what a part may stand above, neither touches nor carries the other.
+A prism is a convex polygon, with a rim around it, between two heights. What is in two prisms that are further apart
+than what a part may stand above, neither touches nor carries the other.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _NEAR = REST_GAP + 0.001
 
 
 @frozen(eq=False)
-class Room:
+class Prism:
     """Where something can be.
 
     Args:
@@ -39,19 +39,19 @@ class Room:
     high: float
 
     @staticmethod
-    def around(corners: Array, rim: float = 0.0) -> Room:
+    def around(corners: Array, rim: float = 0.0) -> Prism:
         """Of what has these corners (n, 3)."""
         z = corners[:, 2]
-        return Room(around(corners[:, :2]), rim, float(z.min()) - rim, float(z.max()) + rim)
+        return Prism(around(corners[:, :2]), rim, float(z.min()) - rim, float(z.max()) + rim)
 
-    def is_near(self, other: Room) -> bool:
+    def is_near(self, other: Prism) -> bool:
         """Whether what is in one could touch, or stand on, what is in the other."""
         if max(self.low - other.high, other.low - self.high) > _NEAR:
             return False
         return _apart(self.flat, other.flat) <= self.rim + other.rim + _NEAR
 
 
-def swept(plate: Plate, riders: Sequence[Array], way: tuple[float, float]) -> list[Room]:
+def swept(plate: Plate, riders: Sequence[Array], way: tuple[float, float]) -> list[Prism]:
     """All that a plate takes along from one position of its axis to another, and the plate itself if it moves.
 
     Args:
@@ -63,7 +63,7 @@ def swept(plate: Plate, riders: Sequence[Array], way: tuple[float, float]) -> li
         along = np.asarray(axis.direction, float)
         ends = (min(way), max(way))
         return [
-            Room.around(_placed(frame, np.vstack([corners + s * along for s in ends])))
+            Prism.around(_placed(frame, np.vstack([corners + s * along for s in ends])))
             for corners in (*own, *riders)
         ]
     return [_turned(plate, corners) for corners in (*own, *riders)]
@@ -75,50 +75,50 @@ def whole(plate: Plate) -> tuple[float, float]:
     return (0.0, axis.upper) if axis.belt is not None else (axis.lower, axis.upper)
 
 
-def surface(plate: Plate) -> list[Room]:
+def surface(plate: Plate) -> list[Prism]:
     """What a belt has on top, which stands whether it runs or not; of other plates nothing."""
     belt = plate.axis.belt
     if belt is None:
         return []
     half = belt.width / 2.0
     corners = [(x, y, 0.0) for x in (0.0, plate.axis.upper) for y in (-half, half)]
-    return [Room.around(_placed(plate.T_world_axis, np.array(corners)))]
+    return [Prism.around(_placed(plate.T_world_axis, np.array(corners)))]
 
 
 @frozen(eq=False)
-class Moment:
+class PartEvent:
     """Something that a program does to parts, which can depend on where the plates of others are then.
 
     Args:
-        rooms: where; surfaces: of plates, on which only what others take along counts.
+        prisms: where; surfaces: of plates, on which only what others take along counts.
         says: what it does, as the beginning of a clause; goes: "on" or "from" a plate.
         plates: on which that surely is: while one of these moves it cannot be done.
         point: m.
     """
 
-    rooms: tuple[Room, ...]
+    prisms: tuple[Prism, ...]
     says: str
     point: tuple[float, float, float]
     plates: frozenset[str] = frozenset()
     goes: str = "on"
-    surfaces: tuple[Room, ...] = ()
+    surfaces: tuple[Prism, ...] = ()
 
 
-def near(some: Iterable[Room], others: Sequence[Room]) -> bool:
+def near(some: Iterable[Prism], others: Sequence[Prism]) -> bool:
     """Whether any of some is near any of others."""
     return any(a.is_near(b) for a in some for b in others)
 
 
-def _turned(plate: Plate, corners: Array) -> Room:
+def _turned(plate: Plate, corners: Array) -> Prism:
     """About its axis, however far."""
     frame, line = plate.T_world_axis, np.asarray(plate.axis.direction, float)
     if not plate.upright:
         far = float(np.linalg.norm(corners, axis=1).max())
-        return Room(frame[None, :2, 3], far, float(frame[2, 3]) - far, float(frame[2, 3]) + far)
+        return Prism(frame[None, :2, 3], far, float(frame[2, 3]) - far, float(frame[2, 3]) + far)
     along = corners @ line
     far = float(np.linalg.norm(corners - along[:, None] * line, axis=1).max())
     z = _placed(frame, np.array([along.min() * line, along.max() * line]))[:, 2]
-    return Room(frame[None, :2, 3], far, float(z.min()), float(z.max()))
+    return Prism(frame[None, :2, 3], far, float(z.min()), float(z.max()))
 
 
 def _placed(frame: Array, corners: Array) -> Array:

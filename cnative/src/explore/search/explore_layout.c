@@ -7,7 +7,7 @@
  * whose union adds the fewest combinations are united, until there are four.
  */
 #include "../explore_run.h"
-#include "../search/explore_successors.h"
+#include "explore_successors.h"
 
 #include <string.h>
 

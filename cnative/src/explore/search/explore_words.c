@@ -2,9 +2,9 @@
  * explore_words.c - the search where a state is one word: generated functions make the words of all successors of a
  * state, and the store holds them as they are.
  */
-#include "../search/explore_search.h"
-#include "../search/explore_successors.h"
-#include "explore_words.h"
+#include "explore_search.h"
+#include "explore_successors.h"
+#include "../store/explore_words.h"
 
 #include <string.h>
 

@@ -18,8 +18,8 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "explore_local.h"
-#include "../search/explore_successors.h"
-#include "explore_multiset.h"
+#include "explore_successors.h"
+#include "../state/explore_multiset.h"
 
 #include <string.h>
 

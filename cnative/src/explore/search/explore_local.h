@@ -5,7 +5,7 @@
 #define EXPLORE_LOCAL_H
 
 #include "../explore_run.h"
-#include "../search/explore_successors.h"
+#include "explore_successors.h"
 
 typedef struct ex_local ex_local_t;
 typedef struct ex_wake ex_wake_t;
