@@ -33,7 +33,7 @@ def test_all_ways_and_the_token_game_agree_of_nets(seed: int, tmp_path: Path) ->
 
 @pytest.mark.parametrize("seed", CELL_SEEDS)
 def test_all_ways_and_runs_agree_of_cells(seed: int, tmp_path: Path) -> None:
-    verdict = judge("shapes", seed, tmp_path, number=3, runs=2)
+    verdict = judge("shapes", seed, tmp_path, number=amount(1, 3), runs=amount(1, 2))
     assert not verdict.wrong
     assert verdict.counts["answer yes"] > 0
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from helpers import record_list_cell
 from helpers.asked import Net
 from helpers.netbuilder import write
 from helpers.processes import pn2code
@@ -154,3 +155,13 @@ def test_what_cannot_be_asked(tmp_path: Path) -> None:
     raising = ["--property", "ltl G !fires(Drill, { 1 div n = 7 })", "--property", "ltl F dead"]
     code, said = asked(write(DRILLING, tmp_path / "d.cpn"), tmp_path, *raising)
     assert (code, [p["answer"] for p in said["properties"]]) == (3, ["inconclusive", "yes"])
+
+
+def test_seconds_between_steps_of_a_cell(tmp_path: Path) -> None:
+    """The parts of transitions have numbers that the cell's own net does not have."""
+    folder = record_list_cell.write(tmp_path)
+    first, second = "fires(Sup'Seen, { true })", "fires(Rob'Report, { true })"
+    asked = f"every {first} is followed by {second} within 5 seconds"
+    done = pn2code("verify", folder, "--no-medium", "--property", asked)
+    assert done.returncode == 3, done.stderr
+    assert "neither how long moves take nor how late" in " ".join(done.stdout.split())

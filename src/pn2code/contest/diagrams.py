@@ -52,6 +52,8 @@ class Diagrams:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.lock = threading.Lock()
+        self.is_over = threading.Event()
+        """Set when nobody waits for the sizes any more."""
         self.is_tried = False
         self.counted: Counted | None = None
         """The net made smaller to be counted, once that was tried."""
@@ -122,10 +124,23 @@ class Diagrams:
         for k in range(_SEARCHES):
             began = time.monotonic()
             until = began + max(0.0, ends - began) / (_SEARCHES - k)
-            first = _improved(row.net, first, began + _IMPROVING * (until - began), k)
+            first = self._improved(row.net, first, began + _IMPROVING * (until - began), k)
             for i, order in enumerate((first, first[::-1])):
                 left = max(0.0, until - time.monotonic()) / (2 - i)
                 yield Task("sizes", row.written(order), left, mebibytes)
+
+    def _improved(self, net: Tables, order: list[int], until: float, seed: int) -> list[int]:
+        """An order of the places of a net, made better for some time."""
+        return improved(
+            len(net.initial),
+            net.pre,
+            net.post,
+            order,
+            until=until,
+            processor=_IMPROVING_S,
+            seed=seed,
+            is_over=self.is_over.is_set,
+        )
 
     def _row(self, which: int, ends: float) -> _Row:
         """What a lane builds, and its orders, the most promising ones first."""
@@ -161,12 +176,6 @@ class _Row:
     orders: list[list[int]]
     net: Tables
     has_units: bool = False
-
-
-def _improved(net: Tables, order: list[int], until: float, seed: int) -> list[int]:
-    """An order of the places of a net, made better for some time."""
-    arcs = net.pre, net.post
-    return improved(len(net.initial), *arcs, order, until=until, processor=_IMPROVING_S, seed=seed)
 
 
 def as_written(tables: Tables) -> list[int]:

@@ -30,11 +30,15 @@ def space(
     lanes: list[Iterable[Task]] = []
     if only in ("", "explore"):
         lanes.append(Task("count", tables.text([]), seconds, mebibytes // 3) for _ in range(1))
+    diagrams = Diagrams(tables)
     if only in ("", METHOD):
-        lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(
-        program, [_until(ends, lane) for lane in lanes], until=ends + grace_of(seconds)
-    ):
-        if isinstance(found, Space):
-            return found
-    return None
+        lanes += diagrams.sizes(seconds, mebibytes // 3)
+    try:
+        for found in ask(
+            program, [_until(ends, lane) for lane in lanes], until=ends + grace_of(seconds)
+        ):
+            if isinstance(found, Space):
+                return found
+        return None
+    finally:
+        diagrams.is_over.set()

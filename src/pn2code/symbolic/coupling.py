@@ -14,7 +14,7 @@ from __future__ import annotations
 import random
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -49,6 +49,7 @@ def improved(
     processor: float = inf,
     seed: int = 1,
     moves: int = sys.maxsize,
+    is_over: Callable[[], bool] = lambda: False,
 ) -> list[int]:
     """An order of all places that costs no more than the first one, which it is if the net is large.
 
@@ -61,6 +62,7 @@ def improved(
         processor: seconds of it that the thread may use.
         seed: of the moves.
         moves: that are tried at most.
+        is_over: asked before each move, whether nobody waits for the order any more.
     """
     if places < 2 or places * len(pre) > MOST:
         return list(start)
@@ -70,7 +72,7 @@ def improved(
     lowest = net.cost(order)
     began = time.thread_time()
     for _ in range(moves):
-        if time.monotonic() >= until or time.thread_time() - began >= processor:
+        if is_over() or time.monotonic() >= until or time.thread_time() - began >= processor:
             break
         moved = net.moved(order, draw)
         cost = net.cost(moved)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from helpers.coloured_families import shared_memory
 from pn2code.contest import diagrams
 from pn2code.contest.diagrams import TRIED, Diagrams, as_written
 from pn2code.contest.engine import Task, ask, engine
+from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
@@ -132,3 +134,19 @@ def _order(text: str) -> list[str]:
 def test_a_net_without_places_has_one_order_to_count_with() -> None:
     tasks = [list(lane) for lane in Diagrams(Tables((), (), (), {}, {})).sizes(10.0, 64)]
     assert [len(lane) for lane in tasks] == [1, 0]
+
+
+def test_no_order_is_made_better_when_the_sizes_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Diagrams] = []
+    sizes = Diagrams.sizes
+
+    def noted(self: Diagrams, seconds: float, mebibytes: int) -> list[Iterator[Task]]:
+        made.append(self)
+        return sizes(self, seconds, mebibytes)
+
+    monkeypatch.setattr(Diagrams, "sizes", noted)
+    with engine(Diagnostics()) as program:
+        assert program is not None
+        found = space(program, processes(2), seconds=600.0, mebibytes=256)
+    assert found is not None
+    assert [d.is_over.is_set() for d in made] == [True]

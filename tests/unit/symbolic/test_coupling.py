@@ -37,6 +37,14 @@ def test_a_better_order_has_all_places_and_costs_no_more(monkeypatch: pytest.Mon
         net = coupling.Coupled(places, pre, post)
         assert net.cost(order) <= net.cost(start)
     assert improved(2, [{0: 1}], [{1: 1}], [1, 0], until=0.0) == [1, 0]
+    asked: list[int] = []
+
+    def is_enough() -> bool:
+        asked.append(1)
+        return len(asked) > 3
+
+    improved(2, [{0: 1}], [{1: 1}], [1, 0], until=time.monotonic() + 600.0, is_over=is_enough)
+    assert len(asked) == 4
     monkeypatch.setattr(coupling, "MOST", 1)
     assert improved(2, [{0: 1}], [{1: 1}], [0, 1], until=time.monotonic() + 600.0) == [0, 1]
 

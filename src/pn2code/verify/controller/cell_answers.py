@@ -43,7 +43,10 @@ _INITIAL = "when the net returns to its initial marking, the programs are not at
 
 
 def waits(asked: m.Response, partition: Partition) -> str:
-    """What the net does not know of a time: how long that takes which those do whose steps the property names."""
+    """What the net does not know of a time: how long that takes which those do whose steps the property names.
+
+    Of steps with a condition on their bindings nobody is named.
+    """
     named = [x for f in (asked.first, asked.second) for x in m.atoms(f)]
     fired = {x.number for x in named if x.kind == "fires"}
     owners = {partition.transition_owner[t] for t in fired}
@@ -158,7 +161,7 @@ def of_cell(
             of_net.about.asked
         )  # of parts of transitions, what is assumed is a part of the formula
         is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
-        certain = _certain(answer, control, undetermined, all_orders, is_fair)
+        certain = _certain(answer, asked, control, undetermined, all_orders, is_fair)
         if certain.evidence is not None and not _can_be_done(answer, control, storage or {}):
             certain = Answer(answer.about, "inconclusive", _OVERTAKEN)
         certain = _projected(certain, control)
@@ -171,16 +174,30 @@ def of_cell(
 
 
 def _certain(
-    answer: Answer, control: Control, undetermined: str, all_orders: bool, is_fair: bool
+    answer: Answer,
+    drawn: m.Asked,
+    control: Control,
+    undetermined: str,
+    all_orders: bool,
+    is_fair: bool,
 ) -> Answer:
-    """Without what the cell's own steps, chance, numbers of steps or durations leave open; `is_fair`: fairness is
-    assumed."""
+    """Without what the cell's own steps, chance, numbers of steps or durations leave open.
+
+    Args:
+        answer: of the cell; where parts of transitions are asked about, its formula has the numbers of these.
+        drawn: the formula with the numbers of the net's own transitions.
+        control: what the cell was looked at in.
+        undetermined: what chance and the order of steps leave open.
+        all_orders: whether the supervisor was left its choice.
+        is_fair: whether fairness is assumed.
+    """
     asked, running = answer.about.asked, control.running
     open_ = ""
     if answer.answer == "inconclusive":
         return replace(answer, node=None)
     if isinstance(asked, m.Response) and asked.time is not None:
-        open_ = waits(asked, control.partition)
+        assert isinstance(drawn, m.Response)
+        open_ = waits(drawn, control.partition)
     elif not means_the_same(asked, answer.answer):
         is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
         open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
