@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pn2code.contest.examinations import ALL, FORMULAS
+from pn2code.contest.words import ALL, FORMULAS
 
 ROOT = Path(__file__).resolve().parent.parent
 GRACE_S = 30.0

@@ -14,10 +14,15 @@ def main() -> NoReturn:
     """Runs a verb and ends the process.
 
     Until the verbs are loaded, which takes some tenths of a second, Ctrl-C ends the process without a traceback.
+    What has to end at its limit even where that takes longer is watched from here on.
     """
     deadline.note_start()
     _open_closed_streams()
     before = signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if sys.argv[1:2] == ["contest"]:
+        from pn2code.contest import watchdog
+
+        watchdog.begin(sys.argv[2:])
     from pn2code.cli import main as command  # the package is what takes so long
 
     signal.signal(signal.SIGINT, before)

@@ -1,4 +1,4 @@
-"""The process that watches `pn2code contest`: all is said at the limit, and no process is left behind."""
+"""The process that watches `pn2code contest`: all is said at the limit, and nobody works on but compilers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from helpers.played import PATIENCE_S
 from helpers.pnml_nets import arc, net, place, transition
+from pn2code.cli.main import _command
+from pn2code.cli.options import Exit
+from pn2code.contest import watchdog
 
 STUCK = """
 import os, sys, time
@@ -68,11 +71,22 @@ def _stuck(folder: Path, examination: str, where: str, how: str) -> Iterator[sub
     flag.unlink(missing_ok=True)
     program = STUCK.format(where=where, how=how, flag=str(flag))
     command = [sys.executable, "-c", program, "contest", str(folder), examination]
+    with _running([*command, "--max-seconds", "6000"]) as process:
+        yield process
+
+
+@contextmanager
+def _running(
+    command: list[str], own: dict[str, str] | None = None
+) -> Iterator[subprocess.Popen[str]]:
+    """A command, perhaps with variables of its own."""
     process = subprocess.Popen(
-        [*command, "--max-seconds", "6000"],
+        command,
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        env={**os.environ, **(own or {})},
     )
     try:
         yield process
@@ -200,3 +214,145 @@ time.sleep(600)
     )
     assert done.stdout.splitlines() == [f"FORMULA Net-{x} CANNOT_COMPUTE" for x in "ab"]
     assert done.returncode == 0, done.stderr
+
+
+LATE = """
+import os, sys
+from pn2code.contest import watchdog
+from pn2code.start import main
+
+class Watchdog(watchdog._Watchdog):
+    ends = property(lambda self: 0.0 if os.path.exists({flag!r}) else 1e9, lambda self, ends: None)
+
+class Late:
+    def find_spec(self, name, path=None, target=None):
+        if name == "pn2code.cli":
+            print(os.getpid(), file=sys.stderr, flush=True)
+            open({flag!r}, "w").close()
+            sum(range(10 ** 13))
+
+watchdog._Watchdog = Watchdog
+sys.meta_path.insert(0, Late())
+main()
+"""
+"""The time is over while the command is loaded."""
+
+
+def test_a_command_is_watched_before_it_is_loaded(tmp_path: Path) -> None:
+    folder = _folder(tmp_path)
+    program = LATE.format(flag=str(tmp_path / "over"))
+    for words in (["--max-seconds", "6000"], ["--max-seconds=6000", "--memory", "100"], []):
+        (tmp_path / "over").unlink(missing_ok=True)
+        command = [sys.executable, "-c", program, "contest", *words, str(folder), "CTLCardinality"]
+        with _running(command) as process:
+            said, errors = process.communicate(timeout=PATIENCE_S)
+        assert said.splitlines() == [f"FORMULA Net-{x} CANNOT_COMPUTE" for x in "ab"], errors
+        assert process.returncode == 0
+        assert _has_ended(int(errors.split()[0]))
+
+
+def test_wrong_arguments_are_told_by_the_command(tmp_path: Path) -> None:
+    """Whoever watches knows the options, and leaves what is wrong to the one that works."""
+    options = {name for p in _command("contest").params for name in p.opts if name.startswith("-")}
+    assert options == {*watchdog.OPTIONS}
+    folder = str(_folder(tmp_path))
+    for words in (
+        [folder],
+        [folder, "Nothing"],
+        [folder, "OneSafe", "--max-seconds", "soon"],
+        [folder, "OneSafe", "--max-seconds", "nan"],
+        [folder, "OneSafe", "--max-seconds", "-1"],
+        [folder, "OneSafe", "--max-seconds"],
+        [folder, "OneSafe", "--other", "1"],
+        [folder, "OneSafe", "--memory", "much"],
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", "pn2code", "contest", *words],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+            check=False,
+        )
+        assert (done.returncode, done.stdout) == (Exit.USAGE, ""), words
+        assert "Traceback" not in done.stderr, done.stderr
+
+
+COMPILER = """#!/bin/sh
+case "$*" in *--version*) echo fake 1.0; exit;; esac
+for made; do :; done
+case " $* " in
+*" -c "*) made=${made##*/}; made=${made%.c}.o;;
+*) made=program;;
+esac
+echo "$made" >> "$SAID"
+while [ ! -e "$GO" ]; do sleep 0.05; done
+: > "$made"; chmod +x "$made"
+"""
+"""It says what it is to make, and makes nothing of it once it may."""
+
+
+def test_an_engine_is_compiled_although_the_time_is_over(tmp_path: Path) -> None:
+    """Two commands have no time for it; it is compiled once, and kept."""
+    folder = _folder(tmp_path)
+    compiler, said, go, cache = (tmp_path / name for name in ("cc", "said", "go", "cache"))
+    compiler.write_text(COMPILER)
+    compiler.chmod(0o755)
+    own = {"CC": str(compiler), "SAID": str(said), "GO": str(go), "XDG_CACHE_HOME": str(cache)}
+    flag = tmp_path / "over"
+    program = STUCK.format(where="asking.asked", how="pass", flag=str(flag))
+    command = [sys.executable, "-c", program, "contest", str(folder), "OneSafe"]
+    try:
+        for _ in range(2):
+            flag.unlink(missing_ok=True)
+            with _running(command, own) as process:
+                _await(said.exists)
+                flag.touch()
+                text, errors = process.communicate(timeout=PATIENCE_S)
+            assert text == "FORMULA OneSafe CANNOT_COMPUTE\n", errors
+            assert process.returncode == 0
+        assert not _programs(cache)
+    finally:
+        go.touch()
+    _await(lambda: bool(_programs(cache)))
+    made = said.read_text().split()
+    assert "tables.o" in made and len(made) == len(set(made))
+
+
+def _programs(cache: Path) -> list[Path]:
+    """What is kept."""
+    return [p for p in cache.glob("pn2code/programs/tables-*") if not p.suffix]
+
+
+def _await(is_so: Callable[[], bool]) -> None:
+    until = time.monotonic() + PATIENCE_S
+    while not is_so():
+        assert time.monotonic() < until
+        time.sleep(0.02)
+
+
+def test_an_interrupted_command_has_nothing_compiled(tmp_path: Path) -> None:
+    """Its compilers end with it."""
+    folder = _folder(tmp_path)
+    compiler, said, go, cache = (tmp_path / name for name in ("cc", "said", "go", "cache"))
+    compiler.write_text(COMPILER.replace('echo "$made"', "echo $$"))
+    compiler.chmod(0o755)
+    own = {"CC": str(compiler), "SAID": str(said), "GO": str(go), "XDG_CACHE_HOME": str(cache)}
+    command = [sys.executable, "-m", "pn2code", "contest", str(folder), "OneSafe"]
+    try:
+        with _running([*command, "--max-seconds", "6000"], own) as process:
+            _await(said.exists)
+            process.terminate()
+            process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == 130
+        assert all(_has_ended(int(pid)) for pid in said.read_text().split())
+    finally:
+        go.touch()
+
+
+def test_a_net_that_is_not_read_in_time_leaves_all_formulas_open(tmp_path: Path) -> None:
+    folder = _folder(tmp_path)
+    command = [sys.executable, "-m", "pn2code", "contest", str(folder), "CTLCardinality"]
+    with _running([*command, "--max-seconds", "0"]) as process:
+        said, errors = process.communicate(timeout=PATIENCE_S)
+    assert said.splitlines() == [f"FORMULA Net-{x} CANNOT_COMPUTE" for x in "ab"], errors

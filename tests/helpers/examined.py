@@ -9,9 +9,10 @@ from pathlib import Path
 from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_condition
 from pn2code.contest.engine import Space
-from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
+from pn2code.contest.examinations import Asked, Part, asked
 from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
 from pn2code.contest.tables import Tables
+from pn2code.contest.words import GLOBAL
 
 FORMULAS = 6
 """Of each kind."""

@@ -77,13 +77,14 @@ ALLOWED: dict[str, set[str]] = {
         "drawing", "emission", "geometry", "input_files", "ir", "live", "lowering", "ml", "net", "new_cell", "pipeline",
         "play", "properties", "reading", "registers", "replay", "report", "robot", "robot_scripts", "run", "semantics",
         "simulate", "structure", "tdl", "text_form", "timing", "trace", "unfold", "verdict", "verify", "web"},
-    "start": {"cli"},
+    "start": {"cli", "contest"},
 }  # fmt: skip
 EVERYWHERE = {"base"}
 
 # Of `robot`, the script language and the proofs may know the commands (plain values) only.
 ONLY = {
     ("cell", "robot"): {"pn2code.robot.commands"},
+    ("start", "contest"): {"pn2code.contest", "pn2code.contest.watchdog"},
     ("tdl", "robot"): {"pn2code.robot.approach", "pn2code.robot.commands"},
     ("verify", "robot"): {"pn2code.robot.commands"},
     ("primitive_calls", "robot"): {"pn2code.robot.approach", "pn2code.robot.commands"},

@@ -17,13 +17,13 @@ from pn2code.base.progress_line import SILENCE_S, Line
 from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest import ptnet
 from pn2code.contest.asking import Asking
+from pn2code.contest.building import wait_until_built
 from pn2code.contest.engine import engine
-from pn2code.contest.examinations import ALL, names
 from pn2code.contest.formulas import FormulaError
 from pn2code.contest.rounds import METHODS
 from pn2code.contest.tables import Tables
-from pn2code.contest.watchdog import watched
-from pn2code.contest.words import UNKNOWN
+from pn2code.contest.watchdog import MOST_S, watched
+from pn2code.contest.words import ALL, UNKNOWN, names, unknown
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
@@ -48,7 +48,7 @@ Method = StrEnum("Method", {name: name for name in METHODS})  # type: ignore[mis
 def contest(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of an input.")],
     examination: Annotated[Examination, typer.Argument(help="What is asked.")],
-    max_seconds: Annotated[float, seconds_option("Stop after S seconds.")] = 60.0,
+    max_seconds: Annotated[float, seconds_option("Stop after S seconds.")] = MOST_S,
     memory: Annotated[
         int, typer.Option(metavar="MIB", min=16, help="The most memory for all methods.")
     ] = 8192,
@@ -61,7 +61,8 @@ def contest(
     """
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
-    watch = watched(deadline, names(examination, folder))
+    lines = names(examination, folder)
+    watch = watched(deadline, lines)
     d = Diagnostics()
     net: Tables | FlatNet | None = None
     with suppress(TimeIsOverError), deadline.enforced():
@@ -72,8 +73,9 @@ def contest(
                 typer.echo(UNKNOWN)
                 stop(d, Format.FULL)
     if net is None:
-        typer.echo(UNKNOWN)
+        typer.echo("\n".join(map(unknown, lines)) or UNKNOWN)
         return
+    wait_until_built()
     with engine(d) as program:
         if program is None:
             stop(d, Format.FULL)
@@ -89,10 +91,10 @@ def contest(
         )
         try:
             if isinstance(net, Tables):
-                lines = asking.of_tables(net)
+                answers = asking.of_tables(net)
             else:
-                lines = asking.of_net(net, lambda net: _tables(net, d))
-            _print(lines, asking)
+                answers = asking.of_net(net, lambda net: _tables(net, d))
+            _print(answers, asking)
         except FormulaError as error:
             typer.echo(f"pn2code: {error}", err=True)
             typer.echo(UNKNOWN)

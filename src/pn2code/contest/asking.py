@@ -17,13 +17,13 @@ from pathlib import Path
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.contest.engine import Space
-from pn2code.contest.examinations import SPACE, Asked, asked
+from pn2code.contest.examinations import Asked, asked
 from pn2code.contest.portfolio import answers
 from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
 from pn2code.contest.watchdog import Watch
-from pn2code.contest.words import UNKNOWN, unknown
+from pn2code.contest.words import SPACE, UNKNOWN, unknown
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit

@@ -12,18 +12,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Tokens, names_in, read
+from pn2code.contest.formulas import Fireable, Formula, FormulaError, Op, Tokens, read
 from pn2code.contest.implied import Implied
 from pn2code.contest.tables import Tables
 from pn2code.contest.temporal import check
+from pn2code.contest.words import FORMULAS, GLOBAL
 
-FORMULAS = (
-    "ReachabilityCardinality", "ReachabilityFireability", "UpperBounds", "CTLCardinality", "CTLFireability",
-    "LTLCardinality", "LTLFireability",
-)  # fmt: skip
-GLOBAL = ("ReachabilityDeadlock", "OneSafe", "QuasiLiveness", "Liveness", "StableMarking")
-SPACE = "StateSpace"
-ALL = (SPACE, *GLOBAL, *FORMULAS)
 _FEW = 40
 """For the liveness of so many transitions the net is reduced."""
 
@@ -98,13 +92,6 @@ def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
         except FormulaError as error:
             found.append(Asked(question.name, why_not=str(error)))
     return found
-
-
-def names(examination: str, folder: Path) -> list[str]:
-    """What the lines of an examination are called, before the net is known; of the state space none."""
-    if examination in GLOBAL:
-        return [examination]
-    return names_in(folder / f"{examination}.xml") if examination in FORMULAS else []
 
 
 def _of_formula(tables: Tables, examination: str, name: str, f: Formula) -> Asked:

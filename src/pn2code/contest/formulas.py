@@ -8,8 +8,6 @@ stays there, and counts.
 
 from __future__ import annotations
 
-import re
-from html import unescape
 from pathlib import Path
 
 from lxml import etree
@@ -120,15 +118,6 @@ def read(path: Path) -> list[Question]:
             question = Question(name, None, "several formulas have this name")
         found[name] = question
     return list(found.values())
-
-
-def names_in(path: Path) -> list[str]:
-    """The names of the formulas of a file, as far as they are seen at once; for who cannot wait until it is read."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return []
-    return [unescape(name.strip()) for name in re.findall(r"<id>([^<>]+)</id>", text)]
 
 
 def _tag(node: etree._Element) -> str:

@@ -8,25 +8,32 @@ Code in C that does not return (a factorisation, a large number, a pattern), and
 processors, keep Python from looking at the clock. The process that was called does nothing but wait, so that a
 processor is given to it as soon as it wants one: when the time is over it kills the other one, prints
 `CANNOT_COMPUTE` for what was not said, and ends with 0. Where that one ends by itself its exit code is that of both;
-where it is killed, as when there is no memory left, what is open is said as well.
+where it is killed, as when there is no memory left, what is open is said as well. Loading the command may take longer
+than its limit, so it is watched before that (`begin`).
 """
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
 from pn2code.base.deadline import Deadline, is_command
-from pn2code.contest.words import UNKNOWN, unknown
+from pn2code.contest.words import ALL, UNKNOWN, names, unknown
 
+MOST_S = 60.0
+"""What the command has where it is not told."""
+OPTIONS = ("--max-seconds", "--memory", "--only")
+"""Those of the command that have a value."""
 _GRACE_S = 1.25
 _GRACE = 0.06
 """So much later than its time, but by no more than that part of it and a quarter of a second, the work may end."""
@@ -65,15 +72,55 @@ class Watch:
             data = data[os.write(self._told, data) :]
 
 
+_begun: Watch | None = None
+
+
+def begin(arguments: Sequence[str]) -> None:
+    """Watches a command from here on, before it is loaded; not if its arguments are wrong, of which it tells itself.
+
+    Args:
+        arguments: of the verb.
+    """
+    global _begun
+    asked = _asked(arguments)
+    if asked is not None:
+        _begun = watched(*asked)
+
+
+def _asked(arguments: Sequence[str]) -> tuple[Deadline, list[str]] | None:
+    """When the time is over, and the lines that are wanted; None: the arguments are not what they should be."""
+    values: dict[str, str] = {}
+    others: list[str] = []
+    left = iter(arguments)
+    for word in left:
+        name, sign, value = word.partition("=")
+        if name in OPTIONS:
+            values[name] = value if sign else next(left, "")
+        elif word.startswith("-"):
+            return None
+        else:
+            others.append(word)
+    try:
+        seconds = float(values.get("--max-seconds", MOST_S))
+    except ValueError:
+        return None
+    if len(others) != 2 or others[1] not in ALL or not math.isfinite(seconds) or seconds < 0.0:
+        return None
+    return Deadline.of_command(seconds), names(others[1], Path(others[0]))
+
+
 def watched(deadline: Deadline, names: Iterable[str]) -> Watch:
     """From here on a process works that is watched; it is the one that comes back from here.
 
-    Within a larger program (a test), beside other threads, or without a limit, nobody watches.
+    Within a larger program (a test), beside other threads, or without a limit, nobody watches. One that is watched
+    from its beginning still is.
 
     Args:
         deadline: the limit; it may be over already.
         names: the lines that are wanted, as far as they are known; none: they are not.
     """
+    if _begun is not None:
+        return _begun
     if not is_command() or deadline.seconds is None or threading.active_count() > 1:
         return Watch()
     sys.stdout.flush()
