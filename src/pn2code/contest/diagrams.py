@@ -52,6 +52,8 @@ class Diagrams:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.lock = threading.Lock()
+        self.ended = threading.Event()
+        """Nobody wants its tasks any more: what is being made for them is given up."""
         self.is_tried = False
         self.counted: Counted | None = None
         """The net made smaller to be counted, once that was tried."""
@@ -122,7 +124,8 @@ class Diagrams:
         for k in range(_SEARCHES):
             began = time.monotonic()
             until = began + max(0.0, ends - began) / (_SEARCHES - k)
-            first = _improved(row.net, first, began + _IMPROVING * (until - began), k)
+            until_better = began + _IMPROVING * (until - began)
+            first = _improved(row.net, first, until_better, k, self.ended.is_set)
             for i, order in enumerate((first, first[::-1])):
                 left = max(0.0, until - time.monotonic()) / (2 - i)
                 yield Task("sizes", row.written(order), left, mebibytes)
@@ -163,10 +166,20 @@ class _Row:
     has_units: bool = False
 
 
-def _improved(net: Tables, order: list[int], until: float, seed: int) -> list[int]:
+def _improved(
+    net: Tables, order: list[int], until: float, seed: int, enough: Callable[[], bool]
+) -> list[int]:
     """An order of the places of a net, made better for some time."""
-    arcs = net.pre, net.post
-    return improved(len(net.initial), *arcs, order, until=until, processor=_IMPROVING_S, seed=seed)
+    return improved(
+        len(net.initial),
+        net.pre,
+        net.post,
+        order,
+        until=until,
+        processor=_IMPROVING_S,
+        enough=enough,
+        seed=seed,
+    )
 
 
 def as_written(tables: Tables) -> list[int]:

@@ -28,13 +28,17 @@ def space(
         return None
     ends = time.monotonic() + seconds
     lanes: list[Iterable[Task]] = []
+    diagrams = Diagrams(tables)
     if only in ("", "explore"):
         lanes.append(Task("count", tables.text([]), seconds, mebibytes // 3) for _ in range(1))
     if only in ("", METHOD):
-        lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(
-        program, [_until(ends, lane) for lane in lanes], until=ends + grace_of(seconds)
-    ):
-        if isinstance(found, Space):
-            return found
+        lanes += diagrams.sizes(seconds, mebibytes // 3)
+    try:
+        for found in ask(
+            program, [_until(ends, lane) for lane in lanes], until=ends + grace_of(seconds)
+        ):
+            if isinstance(found, Space):
+                return found
+    finally:
+        diagrams.ended.set()
     return None

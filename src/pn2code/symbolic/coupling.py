@@ -14,7 +14,7 @@ from __future__ import annotations
 import random
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -47,6 +47,7 @@ def improved(
     *,
     until: float,
     processor: float = inf,
+    enough: Callable[[], bool] = lambda: False,
     seed: int = 1,
     moves: int = sys.maxsize,
 ) -> list[int]:
@@ -59,6 +60,7 @@ def improved(
         start: the order to begin with, from the top downwards.
         until: when to stop, on the monotonic clock.
         processor: seconds of it that the thread may use.
+        enough: asked before each move: whether nobody wants the order any more.
         seed: of the moves.
         moves: that are tried at most.
     """
@@ -70,7 +72,7 @@ def improved(
     lowest = net.cost(order)
     began = time.thread_time()
     for _ in range(moves):
-        if time.monotonic() >= until or time.thread_time() - began >= processor:
+        if time.monotonic() >= until or time.thread_time() - began >= processor or enough():
             break
         moved = net.moved(order, draw)
         cost = net.cost(moved)

@@ -304,7 +304,7 @@ class _Builder:
         with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
             # Sources of the runtime are a library already, mostly: they are written where they are compiled.
-            _put(room, [f for f in self.runtime if not f.path.endswith(".c") or self._is_whole(f)])
+            _put(room, [f for f in self.runtime if not self._is_of_library(f)])
             _put(room, self.files)
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
@@ -348,7 +348,7 @@ class _Builder:
     def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
         """The library, of objects that were there before and of others."""
         compiled_here = [f for f in self.runtime if f.path.endswith(".c")]
-        _put(room, [f for f in compiled_here if not self._is_whole(f)])
+        _put(room, [f for f in self.runtime if self._is_of_library(f)])
         sources = [f.path for f in compiled_here]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
@@ -390,6 +390,12 @@ class _Builder:
 
     def _is_whole(self, source: OutputFile) -> bool:
         return source.path == f"{_RUNTIME}/{self.host.whole}"
+
+    def _is_of_library(self, file: OutputFile) -> bool:
+        """Whether only the runtime reads it; a source that has the net as a part of itself reads its headers, too."""
+        if file.path.endswith(".c"):
+            return not self._is_whole(file)
+        return not self.host.whole and file.path.startswith(f"{_RUNTIME}/")
 
     def _is_own(self, source: str) -> bool:
         return Path(source).name.startswith(self.host.name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from queue import SimpleQueue
 
@@ -52,6 +52,22 @@ def test_a_state_space_does_not_wait_for_orders_of_diagrams(
     tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
     assert space(Path("engine"), tables, seconds=0.0, mebibytes=16, only="diagrams") is None
     go_on.set()
+
+
+def test_orders_are_not_made_better_for_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Callable[[], bool]] = []
+    is_asked = threading.Event()
+
+    def better(*_: object, enough: Callable[[], bool], **__: object) -> list[int]:
+        asked.append(enough)
+        is_asked.set()
+        return [0, 1]
+
+    monkeypatch.setattr(diagrams, "improved", better)
+    tables = Tables((1, 0), ({0: 1},), ({1: 1},), {"p": (0,), "q": (1,)}, {"t": (0,)})
+    assert space(Path("engine"), tables, seconds=0.0, mebibytes=16, only="diagrams") is None
+    assert is_asked.wait(600.0)
+    assert asked[0]()
 
 
 class _Solver:

@@ -37,6 +37,8 @@ def test_a_better_order_has_all_places_and_costs_no_more(monkeypatch: pytest.Mon
         net = coupling.Coupled(places, pre, post)
         assert net.cost(order) <= net.cost(start)
     assert improved(2, [{0: 1}], [{1: 1}], [1, 0], until=0.0) == [1, 0]
+    never = time.monotonic() + 600.0
+    assert improved(2, [{0: 1}], [{1: 1}], [1, 0], until=never, enough=lambda: True) == [1, 0]
     monkeypatch.setattr(coupling, "MOST", 1)
     assert improved(2, [{0: 1}], [{1: 1}], [0, 1], until=time.monotonic() + 600.0) == [0, 1]
 
