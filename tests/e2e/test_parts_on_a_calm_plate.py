@@ -61,7 +61,11 @@ grips = [{ z = 0.075, roll = 180.0 }, { z = 0.075, roll = 180.0, yaw = 180.0 }]
     return meeting_cell(folder, guarded=False, net=net, toml=toml)
 
 
-SEAM = "seam ({x = 200.0, y = 1400.0, z = 1200.0, rx = 180.0, ry = 0.0, rz = 0.0}, 90.0)"
+def seam(degrees: float) -> str:
+    """A line while the plate turns."""
+    return (
+        f"seam ({{x = 200.0, y = 1400.0, z = 1200.0, rx = 180.0, ry = 0.0, rz = 0.0}}, {degrees})"
+    )
 
 
 @pytest.mark.parametrize(
@@ -69,7 +73,7 @@ SEAM = "seam ({x = 200.0, y = 1400.0, z = 1200.0, rx = 180.0, ry = 0.0, rz = 0.0
     [
         (f"moveJoint ({AWAY}); moveHome ()", {"yes"}),
         ("turn 90.0; turn 0.0", {"no", "unknown"}),
-        (f"moveJoint ({AWAY}); {SEAM}; moveHome ()", {"no"}),
+        (f"moveJoint ({AWAY}); {seam(40.0)}; moveHome ()", {"no"}),
     ],
 )
 def test_the_owner_moves_elsewhere(first: str, answers: set[str], tmp_path: Path) -> None:
@@ -81,7 +85,9 @@ def test_the_owner_moves_elsewhere(first: str, answers: set[str], tmp_path: Path
 
 def test_nothing_touches_what_turns_on_a_line(tmp_path: Path) -> None:
     """The tool rests on the box, which turns under it: that was permitted, as on any line."""
-    folder = cell(tmp_path / "cell", f"moveJoint ({AWAY}); {SEAM}; moveHome ()", touches("work ()"))
+    folder = cell(
+        tmp_path / "cell", f"moveJoint ({AWAY}); {seam(90.0)}; moveHome ()", touches("work ()")
+    )
     done = CliRunner().invoke(app, ["check", "--geometry", "--json", str(folder)])
     found: dict[str, Any] = json.loads(done.stdout)["layouts"][0]
     assert found["pairs_answer"] == "no", done.output

@@ -251,7 +251,7 @@ def test_a_net_without_an_end_is_not_known(program: Path) -> None:
     tables = Tables((0,), ({},), ({0: 1},), {"p": (0,)}, {"t": (0,)})
     questions = [tables.bound(0, Tokens(("p",))), "1 reach not sum 1 0 1 1000"]
     for method in ("explore", "reach"):
-        task = Task(method, tables.text(questions), 5.0, 64)
+        task = Task(method, tables.text(questions), 2.0, 64)
         found = [a for a in ask(program, [task]) if isinstance(a, Answer) and a.is_final]
         assert [(a.number, a.value) for a in found] == [(1, True)], method
 

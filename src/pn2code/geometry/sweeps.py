@@ -17,12 +17,11 @@ import heapq
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.geometry.apart import Apart, Found, Standing, spread_of
 from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, Own, gaps, near
 from pn2code.geometry.shown import Shown
