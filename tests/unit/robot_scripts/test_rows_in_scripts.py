@@ -89,6 +89,11 @@ def test_a_list_of_records_is_gone_along(tmp_path: Path) -> None:
         ("length (ds ^^ ds)", "", "count_of(joined(ds_spot, ds_spot))"),
         ("if ds = [{spot = 1, kind = burn}] then 1 else 0", "",
          'ds_spot = ints(1) and ds_kind = strings("burn")'),
+        ("length ([{spot = 1, kind = burn}] ^^ ds)", "", "count_of(joined(strings(\"burn\"), ds_kind))"),
+        ("#spot (hd (ds ^^ [{spot = 1, kind = burn}]))", "",
+         "first_of(joined(ds_spot, ints(1)))"),
+        ("#spot (hd (List.map (fn {spot = p1, kind = p2} => {kind = p2, spot = p1}) ds ^^ ds))", "",
+         "first_of(joined(ds_spot, ds_spot))"),
         ("if null (tl ds) then 1 else 0", "", "compute rest_of(ds_spot)"),
     ],
 )  # fmt: skip
