@@ -168,6 +168,23 @@ def test_what_scripts_do_not_have(tmp_path: Path, colset: str) -> None:
     assert f"has colour set `{colset}`, which robot scripts do not have" in found.messages[0]
 
 
+def test_items_of_messages_have_no_units(tmp_path: Path) -> None:
+    """Files have a word for each of them, which the script did not read."""
+    page = """
+    place Idle = 1
+    trans Go
+      both Idle
+      in x : us
+      out y : us
+    """
+    extra = (
+        "colset MARKED = record n : INT * mark : UNIT;\ncolset US = list MARKED;\nvar us : US;\n"
+    )
+    found = Cell(tmp_path, page, ("x in US", "y out US"), extra=f"{extra}var x : US;\n")
+    assert found.ir is None
+    assert "have a unit among other values" in found.messages[0]
+
+
 @pytest.mark.parametrize(
     ("put", "expected"),
     [
