@@ -68,9 +68,8 @@ def test_conform_finds_a_column_that_is_a_list_of_its_own(tmp_path: Path) -> Non
     script.write_text(text)
     done = CliRunner().invoke(app, ["conform", str(cell), "--generated", str(folder)])
     assert done.exit_code == 1, done.output
-    assert "`result.robcad` holds ints, bool, int according to the script" in " ".join(
-        done.output.split()
-    )
+    said = " ".join(done.output.split())
+    assert said.count("`result.robcad` holds ints, bool, int according to the script") == 1, said
 
 
 def test_a_code_segment_goes_along_a_list(tmp_path: Path) -> None:
@@ -125,3 +124,28 @@ def test_lists_of_twenty(tmp_path: Path) -> None:
     assert done["k"] == 20
     # The robot goes along them from the last one to the first.
     assert done["m"] == [[i, i < 19] for i in range(20)]
+
+
+def test_commands_of_no_time_along_a_list(tmp_path: Path) -> None:
+    """12,100 waits in one moment, of one transition, stop a run in lock-step: `verify` said that the cell ends."""
+    net = record_list_cell.NET.replace(
+        "  fun at n =",
+        "  colset LONG = list SPOT with 0..110;\n  var l : LONG;\n  fun pause (t : REAL) = ();\n  fun at n =",
+    )
+    many = ", ".join(["1"] * 110)
+    net = net.replace("    place Seeing", f"    place Long : LONG = 1`[{many}]\n    place Seeing")
+    does = "List.app (fn _ => List.app (fn _ => pause 0.0) l) l"
+    net = net.replace(
+        "    trans Tell\n",
+        f"    trans Tell code input (l); action {does}\n      both Long : l\n",
+    )
+    toml = record_list_cell.TOML.replace(
+        "[robots.robot1]", 'pause = { command = "wait" }\n[robots.robot1]'
+    )
+    for file in ("look", "job"):  # nobody owes an answer
+        toml = toml.replace(f'"{file}.robcad"', f'"{file}.robcad"\nkind = "data"')
+    cell = record_list_cell.write(tmp_path / "cell", net, toml)
+    options = ["--json", "--threads", "1", "--no-medium", "--traces", str(tmp_path)]
+    said = json.loads(CliRunner().invoke(app, ["verify", str(cell), *options]).stdout)
+    (ends,) = [c for c in said["controller"] if c["check"] == "non-blocking"]
+    assert (ends["answer"], ends["why"]) == ("unknown", "commands")

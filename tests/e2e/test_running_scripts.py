@@ -17,7 +17,7 @@ from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
 from pn2code.run import engine
 from pn2code.verify.controller import control, moments
-from pn2code.verify.controller.commands import Commands
+from pn2code.verify.controller.commands import MANY, Commands
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
@@ -154,6 +154,46 @@ def test_whether_a_script_comes_to_a_command(
     assert turn.code is not None
     action = turn.code.action
     assert (commands.may_come(action), commands.must_come(action)) == (may, must)
+
+
+@pytest.mark.parametrize(
+    ("action", "most"),
+    [
+        ("(act (); act ())", 2),
+        ("List.app (fn _ => (act (); act ())) [1, n]", 4),
+        ("List.app (fn _ => act ()) few", 7),
+        ("List.app (fn _ => act ()) (rev (n :: few))", 8),
+        ("List.app (fn _ => List.app (fn _ => act ()) few) few", 49),
+        ("(List.foldl (fn (_, i) => (act (); i)) 0 few; ())", 7),
+        ("List.app (fn _ => ()) [hd (act () :: [])]", 1),
+        ("List.app (fn _ => act ()) any", MANY),
+        ("each (fn _ => act ()) few", MANY),
+        ("each (fn _ => ()) few", 0),
+        ("(each (fn _ => ()) few; act ())", MANY),
+    ],
+)
+def test_commands_along_lists_are_counted(action: str, most: int, tmp_path: Path) -> None:
+    lists = "  colset FEW = list INT with 0..7;\n  colset ANY = list INT;\n  var few : FEW;\n  var any : ANY;\n"
+    lists += "  fun each f l = List.app f l;\n"
+    page = (
+        counting(action, 5)
+        .replace("code action", "code input (n, few, any); action")
+        .replace(
+            "      in Turning : n\n",
+            "      in Turning : n\n      both Few : few\n      both Any : any\n",
+            1,
+        )
+    )
+    page = page.replace(
+        "    place Done", "    place Few : FEW\n    place Any : ANY\n    place Done"
+    )
+    text = net(ONE, {"A": page}, ACT + N + lists)
+    opened = open_net(write(tmp_path / "cell", text, toml(["A"], TIMELESS)), {})
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    assert partition is not None
+    turn = next(t for t in opened.flat.transitions if t.name == "Top.A.Turn")
+    assert turn.code is not None
+    assert Commands(partition).at_once(turn.code.action) == most
 
 
 def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -437,7 +477,11 @@ def counting(action: str, rounds: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("code", "rounds", "answer"), [("act ()", 6000, "yes"), ("(act (); act ())", 6000, "unknown")]
+    ("code", "rounds", "answer"),
+    [
+        ("act ()", 6000, "yes"),
+        ("(act (); act ())", 6000, "unknown"),
+    ],
 )
 def test_commands_of_one_transition_that_take_no_time(
     code: str, rounds: int, answer: str, tmp_path: Path

@@ -83,10 +83,6 @@ def _differences(
                 f"`{file.path}` holds {held(file.types)} according to the script, "
                 f"which is not colour set `{colset.name}`"
             )
-            yield (
-                f"`{file.path}` holds {held(file.types)} according to the script, "
-                f"which is not colour set `{colset.name}`"
-            )
 
 
 def _of_file(file: t.File) -> _Held:

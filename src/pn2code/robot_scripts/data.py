@@ -228,7 +228,8 @@ class Data:
 
 
 def _has_unit(colset: Colset) -> bool:
-    kinds = [s.kind for s in message_scalars(colset) or ()]
+    scalars = message_scalars(colset) or ()
+    kinds = [x.kind for s in scalars for x in (s, *s.elements)]
     return len(kinds) > 1 and ScalarKind.UNIT in kinds
 
 

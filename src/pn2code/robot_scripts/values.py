@@ -625,12 +625,25 @@ def _on_rows(name: str, of: Rows, more: Sequence[Value]) -> Value:
         case "List.@":
             (other,) = more
             assert isinstance(other, Rows)
-            behind = iter(scalars_in(other))
-            return Rows(of.each(lambda s: _on_list(name, [s, next(behind)])))
+            return Rows(_joined_columns(of.columns, other.columns))
         case _:
             own = [x for x in more if isinstance(x, Scalar)]
             changed = of.each(lambda s: _on_list(name, [s, *own]))
             return changed if name == "List.nth" else Rows(changed)
+
+
+def _joined_columns(front: Rec, behind: Rec) -> Rec:
+    """The columns of both, by their labels: records in order of declaration meet those in order of their type."""
+    out: list[tuple[str, Value]] = []
+    for label, column in front.fields:
+        other = behind.get(label)
+        if isinstance(column, Rec) and isinstance(other, Rec):
+            out.append((label, _joined_columns(column, other)))
+        else:
+            assert isinstance(column, Scalar)
+            assert isinstance(other, Scalar)
+            out.append((label, _on_list("List.@", [column, other])))
+    return Rec(tuple(out))
 
 
 def item_of(of: Scalar | Rows) -> Value:

@@ -12,7 +12,7 @@ The checker follows paths in it, the interpreter runs it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 
 from pn2code.base.frozen import frozen, record
@@ -76,10 +76,16 @@ Instruction = Do | Jump | BranchUnless | BranchIf | CallProcedure | End
 
 @frozen
 class Body:
-    """The code of the program or a procedure; `labels` give positions."""
+    """The code of the program or a procedure; `labels` give positions.
+
+    Args:
+        along: the positions in loops that come to their end, as each turn takes an item from a list; but not those of
+            other loops within them.
+    """
 
     instructions: tuple[Instruction, ...]
     labels: dict[str, int]
+    along: frozenset[int] = frozenset()
 
     def next(self, at: int) -> tuple[int, ...]:
         """Where control may go from an instruction (calls go on behind)."""
@@ -116,6 +122,8 @@ class _Flattener:
     labels: dict[str, int] = field(default_factory=dict)
     gotos: list[tuple[int, str]] = field(default_factory=list)
     exits: list[list[int]] = field(default_factory=list)
+    along: set[int] = field(default_factory=set)
+    others: set[int] = field(default_factory=set)
 
     def emit(self, instruction: Instruction) -> int:
         self.code.append(instruction)
@@ -145,7 +153,7 @@ class _Flattener:
                     self.patch(e, len(self.code))
             case t.While(condition, body):
                 start = self.emit(BranchUnless(condition, 0, condition.span))
-                self.loop(body, start, s.span)
+                self.loop(body, start, s.span, is_along=_is_along(condition, body))
                 self.patch(start, len(self.code))
             case t.Loop(body):
                 self.loop(body, len(self.code), s.span)
@@ -168,10 +176,18 @@ class _Flattener:
             case _:
                 self.emit(Do(s, s.span))
 
-    def loop(self, body: tuple[t.Statement, ...], start: int, span: Span) -> None:
+    def loop(
+        self, body: tuple[t.Statement, ...], start: int, span: Span, *, is_along: bool = False
+    ) -> None:
         self.exits.append([])
+        outside, self.along, self.others = (self.along, self.others), set(), set()
         self.block(body)
         self.emit(Jump(start, span))
+        own = set(range(start, len(self.code))) - self.along - self.others
+        inside = (self.along, self.others)
+        self.along, self.others = outside
+        self.along |= inside[0] | (own if is_along else set())
+        self.others |= inside[1] | (set() if is_along else own)
         for e in self.exits.pop():
             self.patch(e, len(self.code))
 
@@ -183,7 +199,25 @@ def flatten(body: Iterable[t.Statement], span: Span) -> Body:
     end = f.emit(End(span))
     for at, label in f.gotos:
         f.patch(at, f.labels.get(label, end))
-    return Body(tuple(f.code), f.labels)
+    return Body(tuple(f.code), f.labels, frozenset(f.along))
+
+
+def _is_along(condition: t.Expression, body: Sequence[t.Statement]) -> bool:
+    """`while count_of(l) <> 0 loop .. l := rest_of(l) .. end loop`, where nothing else changes the list."""
+    match condition:
+        case t.Binary("<>", t.CallExpression("count_of", (t.Name(name),)), t.Value(0)):
+            pass
+        case _:
+            return False
+    shorter = t.Assign(t.Target(name), t.CallExpression("rest_of", (t.Name(name),)))
+    changed = 0
+    for s in walk(body):
+        match s:
+            case t.Assign(target):
+                changed += target.name == name
+            case t.Read() | t.Label() | t.Goto() | t.Call():
+                return False
+    return changed == 1 and shorter in body
 
 
 def walk(body: Iterable[t.Statement]) -> Iterator[t.Statement]:

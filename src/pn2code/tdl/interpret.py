@@ -92,7 +92,8 @@ class Interpreter:
         program: checked.
         files: the shared files.
         on_event: hears of marks and messages, in order.
-        step_limit: most instructions between two requests, marks, or messages taken; more is an endless loop.
+        step_limit: most instructions between two requests, marks, or messages taken; more is an endless loop. Those of
+            loops along lists, which come to their end, do not count.
         occurrences: most marks between two requests or messages taken; the same.
     """
 
@@ -148,7 +149,6 @@ class Interpreter:
                 self._finish_sense(result)
             self._statements = self._marks = 0
             while self._statements < self._limit and self._marks <= self._occurrences:
-                self._statements += 1
                 request = self._step()
                 if request is not None:
                     if isinstance(request, Finished):
@@ -218,7 +218,9 @@ class Interpreter:
 
     def _step(self) -> Request | None:
         body, at = self._at[-1]
-        instruction = self._program.bodies[body].instructions[at]
+        code = self._program.bodies[body]
+        instruction = code.instructions[at]
+        self._statements += at not in code.along
         self._line = instruction.span.line or self._line
         following = at + 1
         match instruction:

@@ -89,6 +89,11 @@ def test_a_list_of_records_is_gone_along(tmp_path: Path) -> None:
         ("length (ds ^^ ds)", "", "count_of(joined(ds_spot, ds_spot))"),
         ("if ds = [{spot = 1, kind = burn}] then 1 else 0", "",
          'ds_spot = ints(1) and ds_kind = strings("burn")'),
+        ("length ([{spot = 1, kind = burn}] ^^ ds)", "", "count_of(joined(strings(\"burn\"), ds_kind))"),
+        ("#spot (hd (ds ^^ [{spot = 1, kind = burn}]))", "",
+         "first_of(joined(ds_spot, ints(1)))"),
+        ("#spot (hd (List.map (fn {spot = p1, kind = p2} => {kind = p2, spot = p1}) ds ^^ ds))", "",
+         "first_of(joined(ds_spot, ds_spot))"),
         ("if null (tl ds) then 1 else 0", "", "compute rest_of(ds_spot)"),
     ],
 )  # fmt: skip
@@ -161,6 +166,23 @@ def test_what_scripts_do_not_have(tmp_path: Path, colset: str) -> None:
     found = cell(tmp_path, page, ("x in INT",))
     assert found.ir is None
     assert f"has colour set `{colset}`, which robot scripts do not have" in found.messages[0]
+
+
+def test_items_of_messages_have_no_units(tmp_path: Path) -> None:
+    """Files have a word for each of them, which the script did not read."""
+    page = """
+    place Idle = 1
+    trans Go
+      both Idle
+      in x : us
+      out y : us
+    """
+    extra = (
+        "colset MARKED = record n : INT * mark : UNIT;\ncolset US = list MARKED;\nvar us : US;\n"
+    )
+    found = Cell(tmp_path, page, ("x in US", "y out US"), extra=f"{extra}var x : US;\n")
+    assert found.ir is None
+    assert "have a unit among other values" in found.messages[0]
 
 
 @pytest.mark.parametrize(

@@ -379,6 +379,47 @@ end program"""
     assert end.message == "endless loop: more than 7 transitions without a command or a wait"
 
 
+ALONG = """program t
+var l, m : ints
+var n : int := 0
+begin
+  l := ints(1, 2, 3, 4, 5, 6)
+  {outer}
+    m := ints(1, 2, 3, 4, 5, 6)
+    while count_of(m) <> 0 loop
+      n := n + first_of(l) * first_of(m)
+      {inner}
+      m := rest_of(m)
+    end loop
+    l := {after}
+  end loop
+  stop n
+end program"""
+
+
+def test_statements_along_lists_do_not_count() -> None:
+    """They come to an end, however many there are: a code segment may go along lists within lists."""
+    along = "while count_of(l) <> 0 loop"
+    text = ALONG.format(outer=along, inner="", after="rest_of(l)")
+    assert run(checked(text), step_limit=10).end == Fault("441", 15)
+
+
+@pytest.mark.parametrize(
+    ("outer", "inner", "after"),
+    [
+        ("while count_of(l) <> 0 loop", "", "with_first(rest_of(l), 1)"),
+        ("while count_of(l) <> 0 loop", "l := with_first(l, 1)", "rest_of(l)"),
+        ("while count_of(l) <> 0 loop", "m := with_first(m, 1)", "rest_of(l)"),
+        ("while count_of(l) <> 0 loop", "loop n := 1 end loop", "rest_of(l)"),
+        ("loop", "", "ints(1)"),
+    ],
+)
+def test_loops_along_lists_that_do_not_end(outer: str, inner: str, after: str) -> None:
+    text = ALONG.format(outer=outer, inner=inner, after=after)
+    end = run(checked(text), step_limit=500).end
+    assert isinstance(end, Fault) and "endless loop: 500 statements" in end.message
+
+
 def test_a_loop_that_takes_time_is_not_endless() -> None:
     result = run(checked(script("loop wait 1 ms end loop")), step_limit=3, requests=50)
     assert len(result.commands) == 50 and result.end is None

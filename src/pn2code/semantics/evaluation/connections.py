@@ -12,6 +12,7 @@ otherwise the number of bytes. Whoever only simulates has no such object: then n
 
 from __future__ import annotations
 
+import errno
 import os
 import select
 import socket
@@ -90,14 +91,21 @@ class Connections:
         self._fresh(name)
         try:
             found = socket.getaddrinfo(host, port % 65536, socket.AF_INET, socket.SOCK_STREAM)
-        except (OSError, UnicodeError):
+        except (OSError, ValueError):
             raise ConnectionProblem("BadAddr") from None
+        opened = socket.socket()
         try:
-            opened = socket.create_connection((str(found[0][4][0]), port % 65536), self._wait)
-        except TimeoutError:
-            raise self._late(f"`{name}` is not connected to {host}, port {port}") from None
-        except OSError as error:
-            raise _failed(error) from None
+            opened.setblocking(False)
+            error = opened.connect_ex((str(found[0][4][0]), port % 65536))
+            if error == errno.EINPROGRESS:
+                what = f"`{name}` is not connected to {host}, port {port},"
+                self._wait_for(opened, what, self._end(), select.POLLOUT)
+                error = opened.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+            if error:
+                raise ConnectionProblem("SysErr", os.strerror(error))
+        except BaseException:
+            opened.close()
+            raise
         self._keep(name, opened)
 
     def accept(self, name: str, port: int) -> None:
@@ -112,7 +120,8 @@ class Connections:
                 server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
                 server.bind(("", port % 65536))
                 server.listen(1)
-                self._wait_for(server, f"nobody has connected to port {port}, `{name}`,")
+                what = f"nobody has connected to port {port}, `{name}`,"
+                self._wait_for(server, what, self._end())
                 opened, _ = server.accept()
             except OSError as error:
                 raise _failed(error) from None
@@ -126,23 +135,31 @@ class Connections:
     def send(self, name: str, data: bytes) -> None:
         """Sends a message."""
         connection = self.known(name, "sending data")
-        connection.settimeout(self._wait)
-        try:
-            connection.sendall(segments(data))
-        except TimeoutError:
-            raise self._late(f"what is sent over `{name}` is not taken") from None
-        except OSError as error:
-            raise _failed(error) from None
+        end = self._end()
+        left = memoryview(segments(data))
+        while left:
+            self._wait_for(
+                connection, f"what is sent over `{name}` is not taken", end, select.POLLOUT
+            )
+            try:
+                left = left[connection.send(left) :]
+            except BlockingIOError:
+                continue
+            except OSError as error:
+                raise _failed(error) from None
 
     def receive(self, name: str) -> bytes:
         """Waits for a message."""
         connection = self.known(name, "receiving data")
-        found = b""
+        end = self._end()
+        found = bytearray()
         while True:
-            (head,) = self._taken(connection, name, 1)
-            found += self._taken(connection, name, min(head, SEGMENT))
+            (head,) = self._taken(connection, name, 1, end)
+            found += self._taken(connection, name, min(head, SEGMENT), end)
             if head <= SEGMENT:
-                return found
+                return bytes(found)
+            if time.monotonic() > end:
+                raise self._late(f"a message over `{name}` has not come to its end")
 
     def can_receive(self, name: str) -> bool:
         """Whether something has come."""
@@ -177,16 +194,19 @@ class Connections:
             )
 
     def _keep(self, name: str, opened: socket.socket) -> None:
+        opened.setblocking(False)
         opened.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._open[name] = opened
 
-    def _taken(self, connection: socket.socket, name: str, size: int) -> bytes:
+    def _taken(self, connection: socket.socket, name: str, size: int, end: float) -> bytes:
         """So many bytes that have come."""
         found = b""
         while len(found) < size:
-            self._wait_for(connection, f"nothing has come over connection `{name}`")
+            self._wait_for(connection, f"nothing has come over connection `{name}`", end)
             try:
                 part = connection.recv(size - len(found))
+            except BlockingIOError:
+                continue
             except OSError as error:
                 raise _failed(error) from None
             if not part:
@@ -194,17 +214,28 @@ class Connections:
             found += part
         return found
 
-    def _wait_for(self, connection: socket.socket, what: str) -> None:
-        end = time.monotonic() + self._wait
-        while not self._is_ready(connection, _SLICE):
+    def _end(self) -> float:
+        """When what begins now is late."""
+        return time.monotonic() + max(self._wait, _SLICE)
+
+    def _wait_for(
+        self, connection: socket.socket, what: str, end: float, events: int = select.POLLIN
+    ) -> None:
+        """Until it is ready; also if it always is, the run may be ended meanwhile."""
+        while True:
             if self._interrupted():
                 raise MlUnavailable(f"{what} when the run was interrupted")
+            if self._is_ready(connection, _SLICE, events):
+                return
             if time.monotonic() > end:
                 raise self._late(what)
 
     @staticmethod
-    def _is_ready(connection: socket.socket, seconds: float) -> bool:
-        return bool(select.select([connection], [], [], seconds)[0])
+    def _is_ready(connection: socket.socket, seconds: float, events: int = select.POLLIN) -> bool:
+        """Asked of a socket with any number: `select` knows 1024."""
+        asked = select.poll()
+        asked.register(connection, events)
+        return bool(asked.poll(1000 * seconds))
 
     def _late(self, what: str) -> MlUnavailable:
         return MlUnavailable(f"{what} within {self._wait:g} s (`--sockets`)")

@@ -11,12 +11,20 @@ moves take time (`Commands(partition)`), or any of them may take none (`Commands
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
 from pn2code.cell.reach import Reach
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Kind
+from pn2code.ml.core.types import TFun
+from pn2code.net.uses import walk
+from pn2code.tdl.interpret import MOST_AT_ONCE
 
+MANY = MOST_AT_ONCE
+"""So many commands in one moment stop a run in lock-step."""
 _SHORTEST = 1e-6
 """Seconds; what takes less may be lost when it is added to the time of a long run."""
 
@@ -60,12 +68,15 @@ class Commands:
                 return False
 
     def at_once(self, e: core.Exp) -> int:
-        """The most commands of one evaluation that may take no time."""
-        self._reach.add_locals(e)
-        return self._at_once(e, frozenset())
+        """The most commands of one evaluation that may take no time; MANY: so many, or more."""
+        if not self.may_come(e):
+            return 0
+        return min(MANY, self._at_once(e, frozenset()))
 
     def _at_once(self, e: core.Exp, inside: frozenset[int]) -> int:
         match e:
+            case core.Apply() if isinstance((function := _applied(e))[0], core.Builtin):
+                return self._of_builtin(function[0], function[1], inside)
             case core.Apply(core.Var(symbol), argument) if symbol.uid in self._primitives:
                 primitive = self._primitives[symbol.uid]
                 own = 0 if self._takes_time(primitive, argument) else 1
@@ -75,7 +86,7 @@ class Commands:
             case core.Var(symbol):
                 body = self._reach.body(symbol)
                 if body is None or symbol.uid in inside:
-                    return 0
+                    return 0  # of a parameter whoever says what it stands for is asked
                 return self._at_once(body, inside | {symbol.uid})
             case core.If(condition, then, otherwise):
                 chosen = max(self._at_once(then, inside), self._at_once(otherwise, inside))
@@ -88,6 +99,36 @@ class Commands:
                 return sum(self._at_once(x, inside) for x in [*values, body])
             case _:
                 return sum(self._at_once(x, inside) for x in children(e))
+
+    def _of_builtin(
+        self, builtin: core.Builtin, arguments: Sequence[core.Exp], inside: frozenset[int]
+    ) -> int:
+        """Of `List.app f l`: as often as the list has items, if that is known."""
+        found = [self._at_once(x, inside) for x in arguments]
+        first = arguments[0]
+        takes = _ALONG.get(builtin.name)
+        is_function = (
+            takes is not None
+            or isinstance(first, core.Lambda)
+            or (isinstance(first, core.Var) and isinstance(first.type, TFun))
+        )
+        is_open = is_function and self._calls_given(first)
+        if not is_function or not (found[0] or is_open):
+            return sum(found)
+        most = longest(arguments[-1]) if len(arguments) == takes else None
+        if most is None or is_open:
+            return MANY
+        return most * found[0] + sum(found[1:])
+
+    def _calls_given(self, function: core.Exp) -> bool:
+        """Whether a function calls one that is its parameter, or that of another one: which is not known."""
+        return any(
+            isinstance(x, core.Var)
+            and isinstance(x.type, TFun)
+            and x.symbol.uid not in self._primitives
+            and self._reach.body(x.symbol) is None
+            for x in walk(function)
+        )
 
     def _applies(self, function: core.Exp, argument: core.Exp | None = None) -> bool:
         """Whether applying a function calls a primitive in each of its rules."""
@@ -113,6 +154,51 @@ class Commands:
         if known is None:
             return self._moves and primitive.command not in ("tool", "wait")
         return known >= _SHORTEST
+
+
+def _applied(e: core.Exp) -> tuple[core.Exp, list[core.Exp]]:
+    """A function, and what it is applied to, one argument after the other."""
+    arguments: list[core.Exp] = []
+    while isinstance(e, core.Apply):
+        arguments.insert(0, e.argument)
+        e = e.function
+    return e, arguments
+
+
+_ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3, "List.map": 2}
+"""How many arguments the functions have that apply one to each item of a list, which comes last."""
+
+
+def longest(e: core.Exp) -> int | None:
+    """The most items that a list can have; None: that is not known."""
+    match e:
+        case core.Var(symbol=symbol):
+            whole = None if symbol.colset is None else symbol.colset.whole
+            is_list = whole is not None and whole.kind is Kind.LIST
+            return whole.high if is_list and whole and isinstance(whole.high, int) else None
+        case core.ListExp(items):
+            return len(items)
+        case core.Apply(core.Con(constructor), core.RecordExp(((_, _), (_, others)))) if (
+            constructor.name == "::"
+        ):
+            return _sum(1, longest(others))
+        case core.Apply(core.Builtin("List.rev" | "List.tl"), of):
+            return longest(of)
+        case core.Apply(core.Apply(core.Builtin("List.map"), _), of):
+            return longest(of)
+        case core.Apply(core.Builtin("List.@"), core.RecordExp(((_, one), (_, other)))):
+            return _sum(longest(one), longest(other))
+        case core.If(_, one, other):
+            both = longest(one), longest(other)
+            return None if both[0] is None or both[1] is None else max(both[0], both[1])
+        case core.Con(constructor) if constructor.name == "nil":
+            return 0
+        case _:
+            return None
+
+
+def _sum(a: int | None, b: int | None) -> int | None:
+    return None if a is None or b is None else a + b
 
 
 def lasts(primitive: Primitive, argument: core.Exp | None) -> float | None:
