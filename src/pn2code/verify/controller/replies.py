@@ -392,12 +392,13 @@ class _Commands:
     def _item(self, function: core.Exp, inside: frozenset[int], known: Known) -> Time | None:
         """What a call of a function takes, whatever it is applied to; None: which one is computed."""
         if isinstance(function, core.Var):
-            if function.symbol.uid in self._primitives:
-                return self._command(function.symbol, None, known)
-            body = self._reach.body(function.symbol)
-            if not isinstance(body, core.Lambda) or function.symbol.uid in inside:
+            symbol = function.symbol
+            if symbol.uid in self._primitives:
+                return self._command(symbol, None, known)
+            body = self._reach.body(symbol)
+            if not isinstance(body, core.Lambda) or symbol.uid in inside:
                 return None
-            function, inside = body, inside | {function.symbol.uid}
+            function, inside = body, inside | {symbol.uid}
         if not isinstance(function, core.Lambda):
             return None
         return Time.longest(self._of(rule.body, inside, known) for rule in function.rules)
