@@ -219,3 +219,23 @@ def test_every_curve_is_named_within_its_chart(count: int, tmp_path: Path, chrom
     title = next(y for text, y, _ in written if text == "conditioning")
     assert lines[count - 1][1] < title < lines[count][1]
     assert max(y for _, y, _ in lines) < high
+
+
+def test_a_short_name_is_whole_beside_a_long_reason(tmp_path: Path, chromium: Any) -> None:
+    """The ellipsis of a name that lacked a hundredth of a pixel took three of its four letters."""
+    run = with_arm(described(tmp_path), 1.0)
+    run["title"] = "cell"
+    reason = "robot `one`: `one/driver` and `lift/column` collide (2.5 mm deep), " * 6
+    run["verdict"] = {"word": "failed", "reason": reason, "final": [], "failed": []}
+    file = tmp_path / "replay.html"
+    file.write_text(page(run), encoding="utf-8")
+    with opened(chromium) as browser:
+        browser.open(file)
+        name, lacking = browser.ask(
+            """() => {
+              const h1 = document.querySelector("#top h1"), text = document.createRange();
+              text.selectNodeContents(h1);
+              return [h1.innerText, text.getBoundingClientRect().width - h1.getBoundingClientRect().width];
+            }"""
+        )
+    assert name == "cell" and lacking <= 0.001

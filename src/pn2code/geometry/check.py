@@ -94,7 +94,7 @@ def examine(
         return Geometry((), "no robot of the cell has an arm")
     stage("exploring the cell as its programs run ...")
     try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial, say=say)
     except NotModelledError as problem:
         return Geometry((), f"the cell as it runs cannot be modelled: {problem}")
     if graph is None:
@@ -108,7 +108,9 @@ def examine(
         if is_open and graph.why == "states" and limits.max_states is None:
             most = most_held()
             stage(f"exploring {most:,} states of the cell ...")
-            graph = explore_cell(partition, opened.storage, limits, d, opened.initial, most=most)
+            graph = explore_cell(
+                partition, opened.storage, limits, d, opened.initial, most=most, say=say
+            )
             if graph is None:
                 return None
             wider = None

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import Say, silent
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.terms import Exp
@@ -209,12 +210,13 @@ class CellGraph:
 def explore_cell(
     partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
     initial: str | None = None, program: CellProgram | None = None, *, part: bool = False,
-    most: int | None = None,
+    most: int | None = None, say: Say = silent,
 ) -> CellGraph | None:  # fmt: skip
     """Explores the cell as it runs; None after an error that was reported.
 
     `program` is what somebody has compiled of the same cell. `part`: of a cell that was not seen to its end a part is
-    wanted; else nothing is, but why. `most`: states, where `limits` do not say it; else `MOST_STATES`.
+    wanted; else nothing is, but why. `most`: states, where `limits` do not say it; else `MOST_STATES`. `say`
+    hears how far it is.
 
     Raises:
         NotModelledError: it cannot be said what its programs do.
@@ -248,6 +250,7 @@ def explore_cell(
             questions="".join(f"{line}\n" for line in running.lines(first=True)),
             evidence=Path(folder),
             quick=True,
+            progress=lambda said: _tell(said, say),
         )
         found = explore(running.net, storage, limits, d, options)
         if found is None:
@@ -263,6 +266,13 @@ def explore_cell(
         if not why and seen != (found.nodes, found.arcs):
             graph.why = "file"
         return graph
+
+
+def _tell(said: Mapping[str, Any], say: Say) -> None:
+    """How far an exploration is."""
+    states, waiting = said.get("states", 0), said.get("frontier", 0)
+    if said.get("phase", "explore") == "explore" and states:
+        say(f"exploring: {states:,} states, {waiting:,} of them waiting")
 
 
 def most_held() -> int:

@@ -234,6 +234,8 @@ def look(
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
+    # The closed net of a cell has its answers before the cell takes all the time.
+    soon = other_orders.look(opened, found, part, options) if is_cell else found
     control: Control | None = None
     if cell is not None and asks_control:
         options.stage("exploring the cell as its programs run ...")
@@ -248,7 +250,9 @@ def look(
         options.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
         seen = channel_model.look(opened, cell, found, limits, options, d, looked)
-    return Looked(other_orders.look(opened, found, limits, options), control, more, seen)
+    if not is_cell or (soon.orders is not None and soon.orders.why == "seconds"):
+        soon = other_orders.look(opened, found, limits, options)
+    return Looked(soon, control, more, seen)
 
 
 def _open_channels(cell: Partition, sizes: Sizes) -> frozenset[int]:

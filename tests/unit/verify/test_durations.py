@@ -118,3 +118,53 @@ def test_computed_delays(delay: str, late: str, tmp_path: Path) -> None:
     assert late in found.late and bool(found.late) == bool(late), found
     most = {"2": "2 s", "f": "9 s"}.get(delay)
     assert most is None or f"take at most {most};" in found.premise
+
+
+@pytest.mark.parametrize(
+    ("action", "needs", "what"),
+    [
+        ("List.app (fn _ => drill ()) xs", "4 s", ""),
+        ("List.app (fn x => (drill (); pause 0.5)) (List.rev (tl xs))", "6 s", ""),
+        (
+            "List.app (fn x => pause (real x)) [1, 2]",
+            "",
+            "the time `real x` of `pause` is computed",
+        ),
+        ("List.app pause [0.5, 0.25]", "", "the time of `pause` is computed"),
+        ("List.app bore xs", "4 s", ""),
+        ("(List.app bore (1 :: xs); drill ())", "6 s", ""),
+        ("along (List.map (fn x => x) xs)", "4 s", ""),
+        ("(along [1]; along xs; along [])", "5 s", ""),
+        ("let val ys = if k = 2 then xs else [1] in List.app bore ys end", "4 s", ""),
+        ("List.app (fn x => List.app bore xs) xs", "16 s", ""),
+        ("(List.foldl (fn (x, t) => (drill (); t + x)) 0 xs; ())", "4 s", ""),
+        ("List.app bore []", "0 s", ""),
+        ("List.app bore ys", "", "how many items `ys` of `List.app` has is computed"),
+        ("List.app (fn x => moveHome ()) ys", "0 s", ""),
+        ("along ys", "", "(a colour set of lists with a longest length, `with 0..n`, would tell)"),
+        ("case xs of [] => () | x :: rest => List.app bore rest", "", "how many items `rest`"),
+        ("List.app (alias 1) xs", "", "is computed"),
+    ],
+)
+def test_commands_for_each_item_of_a_list(
+    action: str, needs: str, what: str, tmp_path: Path
+) -> None:
+    declared = """  colset SPOTS = list FEW with 0..4;
+  colset ANY = list FEW;
+  var xs: SPOTS;
+  var ys: ANY;
+  fun bore x = drill ();
+  fun along l = List.app bore l;
+  fun alias x = fn y => drill ();
+"""
+    net = NET.replace("  val MOVE", f"{HEAD}  val MOVE", 1)
+    net = net.replace("  var n, k: INT;", f"{declared}  var n, k: INT;", 1)
+    net = net.replace(
+        "    place Over\n",
+        "    place Over\n    place Xs : SPOTS = 1`[1]\n    place Ys : ANY = 1`[1]\n",
+    )
+    drill = DRILL.replace("code action drill ()", f"code input (k, xs, ys); action {action}")
+    drill += "      both Xs : xs\n      both Ys : ys\n"
+    found = of_net(tmp_path, net.replace(DRILL, drill), 60)
+    assert what in found.late and bool(found.late) == bool(what), found
+    assert f"take at most {needs};" in found.premise if needs else found.premise == ""

@@ -279,10 +279,16 @@ def examine(
             found = replace(
                 found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
             )
+        # Fewer states than are permitted were to show whether all are needed; then the time was over.
+        is_late = part.deadline.is_over() and not _is_full(found, limits)
+        if is_late and found.why == "states":
+            found = replace(found, why="seconds", answers=_late(found.answers))
         count = len(plan.properties.properties)
         answers = found.answers[:count] if in_counts is None else in_counts.answers
         if in_turns is not None:
             answers = turned
+        if is_late:
+            answers = _late(answers)
         elif in_counts is None and found.why in REACHED:
             answers = _hunted(running, plan, limits, options, answers)
         options = replace(options, evidence=Path(name))
@@ -340,6 +346,8 @@ def examine(
                         orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None
+        if is_late:
+            said, asked = _late(said), _late(asked)
         keep = Keeper(plan, running)
         if not is_choiceless and in_turns is None and in_counts is None and other is None:
             asked = orders.answers if orders is not found else ()
@@ -577,6 +585,16 @@ def _cut(answer: Mapping[str, Any], why: str) -> Mapping[str, Any]:
     """The answer, with the reason for which it is not known."""
     is_so = answer["answer"] == "unknown" and answer.get("why") == "states"
     return {**answer, "why": why} if is_so else answer
+
+
+def _is_full(found: Exploration, limits: Limits) -> bool:
+    """Whether as many states were seen as are permitted at all."""
+    return limits.max_states is not None and found.nodes >= limits.max_states
+
+
+def _late(answers: Sequence[Mapping[str, Any]]) -> tuple[Mapping[str, Any], ...]:
+    """The answers, where the time was over before as many states were seen as are permitted."""
+    return tuple(_cut(answer, "seconds") for answer in answers)
 
 
 # --- the net itself ------------------------------------------------------------------------------

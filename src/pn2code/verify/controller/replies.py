@@ -34,6 +34,9 @@ from pn2code.verify.controller.stops import NoProgramError, machine
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
 _ENDLESS = math.inf
+_ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3}
+"""Functions that are called for each item, and how many arguments they have; the list is the last one."""
+_LONGEST = "a colour set of lists with a longest length, `with 0..n`,"
 
 
 @frozen
@@ -45,12 +48,14 @@ class Time:
         is_open: moves or measurements take further ones.
         computed: a wait or a delay that takes further ones, which nobody knows; "": there is none.
         round: transitions that may occur one after the other again and again, if the seconds are without bound.
+        advice: what would tell what is computed.
     """
 
     seconds: float = 0.0
     is_open: bool = False
     computed: str = ""
     round: tuple[str, ...] = ()
+    advice: str = f"a colour set of at most {MOST_VALUES:,} values"
 
     def __add__(self, other: Time) -> Time:
         """One after the other."""
@@ -58,16 +63,19 @@ class Time:
             self.seconds + other.seconds,
             self.is_open or other.is_open,
             self.computed or other.computed,
+            advice=self.advice if self.computed else other.advice,
         )
 
     @staticmethod
     def longest(times: Iterable[Time]) -> Time:
         """Of several, one of which is taken."""
         known = list(times)
+        unknown = next((t for t in known if t.computed), Time())
         return Time(
             max((t.seconds for t in known), default=0.0),
             any(t.is_open for t in known),
-            next((t.computed for t in known if t.computed), ""),
+            unknown.computed,
+            advice=unknown.advice,
         )
 
 
@@ -118,7 +126,7 @@ class Replies:
                 return Replies(
                     f"how long {who} takes for an answer is not known, because {time.computed} is computed, and "
                     f"whoever owes an answer for longer than `reply_timeout_s`, {limit:g} s, stops the cell "
-                    f"(a colour set of at most {MOST_VALUES:,} values would tell)"
+                    f"({time.advice} would tell)"
                 )
             most = Time.longest((most, time))
         if not asked:
@@ -289,6 +297,8 @@ class _Commands:
     def __init__(self, program: core.Program, config: CellConfig, durations: Durations) -> None:
         self._durations = durations
         self._reach = Reach(program)
+        self._given: dict[int, core.Exp] = {}
+        """What the parameters of functions stand for; none is called while it is under way."""
         self._primitives: Mapping[int, Primitive] = {
             program.globals[name].uid: p
             for name, p in config.primitives.items()
@@ -343,6 +353,10 @@ class _Commands:
         while isinstance(function, core.Apply):
             arguments.insert(0, function.argument)
             function = function.function
+        if isinstance(function, core.Builtin) and len(arguments) == _ALONG.get(function.name):
+            along = self._along(function.name, arguments, inside, known)
+            if along is not None:
+                return along
         spent = sum((self._of(x, inside, known) for x in arguments), Time())
         match function:
             case core.Var(symbol=symbol) if symbol.uid in self._primitives:
@@ -358,6 +372,63 @@ class _Commands:
                 return spent + self._call(function, arguments, inside, known)
         return spent + self._of(function, inside, known)
 
+    def _along(
+        self, name: str, arguments: Sequence[core.Exp], inside: frozenset[int], known: Known
+    ) -> Time | None:
+        """A function that is called for each item of a list; None: which one is computed."""
+        function, *others = arguments
+        once = self._item(function, inside, known)
+        if once is None:
+            return None
+        spent = sum((self._of(x, inside, known) for x in others), Time())
+        if once.seconds <= 0:
+            return spent + once
+        most = self._longest(others[-1])
+        if most is None:
+            many = f"how many items `{text_of(others[-1])}` of `{name}` has"
+            return spent + Time(0.0, once.is_open, many, advice=_LONGEST)
+        return spent + (replace(once, seconds=most * once.seconds) if most else Time())
+
+    def _item(self, function: core.Exp, inside: frozenset[int], known: Known) -> Time | None:
+        """What a call of a function takes, whatever it is applied to; None: which one is computed."""
+        if isinstance(function, core.Var):
+            symbol = function.symbol
+            if symbol.uid in self._primitives:
+                return self._command(symbol, None, known)
+            body = self._reach.body(symbol)
+            if not isinstance(body, core.Lambda) or symbol.uid in inside:
+                return None
+            function, inside = body, inside | {symbol.uid}
+        if not isinstance(function, core.Lambda):
+            return None
+        return Time.longest(self._of(rule.body, inside, known) for rule in function.rules)
+
+    def _longest(self, e: core.Exp) -> int | None:
+        """How many items a list has at most; None: it is not known."""
+        match e:
+            case core.ListExp(items):
+                return len(items)
+            case core.Con(constructor) if constructor.name == "nil":
+                return 0
+            case core.Apply(core.Con(constructor), core.RecordExp(((_, _), (_, others)))) if (
+                constructor.name == "::"
+            ):
+                more = self._longest(others)
+                return None if more is None else more + 1
+            case core.Apply(core.Builtin("List.rev" | "List.tl"), of):
+                return self._longest(of)
+            case core.Apply(core.Apply(core.Builtin("List.map"), _), of):
+                return self._longest(of)
+            case core.If(_, then, otherwise):
+                both = self._longest(then), self._longest(otherwise)
+                return None if both[0] is None or both[1] is None else max(both[0], both[1])
+            case core.Var(symbol=symbol):
+                stands = self._given.get(symbol.uid, self._reach.body(symbol))
+                if stands is not None:
+                    return self._longest(stands)
+                return self._durations.longest(symbol)
+        return None
+
     def _call(
         self,
         function: core.Lambda,
@@ -370,11 +441,23 @@ class _Commands:
         ways = []
         for rule in function.rules:
             within = self._durations.bind(rule.pattern, first, known)
+            self._stand(rule.pattern, first)
             if others and isinstance(rule.body, core.Lambda):
                 ways.append(self._call(rule.body, others, inside, within))
             else:  # a function that is computed is a value there
                 ways.append(self._of(rule.body, inside, within))
         return Time.longest(ways)
+
+    def _stand(self, pattern: core.Pat, value: core.Exp) -> None:
+        """Takes note of what the names of a pattern stand for."""
+        match pattern, value:
+            case core.PVar(symbol), _:
+                self._given[symbol.uid] = value
+            case core.PRecord(names), core.RecordExp(fields):
+                given = dict(fields)
+                for label, part in names:
+                    if label in given:
+                        self._stand(part, given[label])
 
     def _command(self, symbol: core.Symbol, argument: core.Exp | None, known: Known) -> Time:
         primitive = self._primitives[symbol.uid]

@@ -1,0 +1,65 @@
+"""A cell takes what time there is: its closed net has its answers before, and time is the reason, not states."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers.small_cell import NET, TOML, write
+from pn2code.base.deadline import Deadline
+from pn2code.cli import verify as command
+from pn2code.cli.main import app
+from pn2code.verify.controller import control
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+
+def verified_late(
+    folder: Path, net: str, monkeypatch: pytest.MonkeyPatch, parts: int = 1
+) -> dict[str, Any]:
+    """The time is over as soon as so many parts of the cell as it runs were explored."""
+    explored_parts: list[object] = []
+    left, explore = Deadline.left.fget, control.explore
+    assert left is not None
+
+    def explored(*args: Any) -> Any:
+        found = explore(*args)
+        explored_parts.append(found)
+        return found
+
+    monkeypatch.setattr(
+        Deadline, "left", property(lambda d: -1.0 if len(explored_parts) >= parts else left(d))
+    )
+    monkeypatch.setattr(control, "explore", explored)
+    monkeypatch.setattr(command, "COUNTS_FROM", None)
+    monkeypatch.setattr(command, "TURNS_FROM", 20)
+    words = ["verify", str(write(folder, net, TOML)), "--no-medium", "-o", str(folder / "runs")]
+    words += ["--property", "ctl AF tokens(Finished) = 1", "--max-seconds", "3600", "--json"]
+    done = CliRunner().invoke(app, words)
+    row: dict[str, Any] = json.loads(done.stdout)
+    return row
+
+
+@pytest.mark.parametrize("parts", [1])
+def test_the_reason_is_the_time(
+    parts: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (answer,) = verified_late(tmp_path, NET, monkeypatch, parts)["properties"]
+    assert answer["answer"] == "inconclusive"
+    assert answer["why"] == "the limit of time was reached"
+
+
+def test_other_orders_of_the_closed_net_come_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    held = "    place Moving : INT\n    place Held : L = 1`[9]\n"
+    net = NET.replace("  page Top\n", "  colset L = list INT;\n  var l: L;\n  page Top\n", 1)
+    net = net.replace("    place Moving : INT\n", held, 1)
+    look = "    trans Look guard [length l > 0, k = hd l]\n      both Held : l\n      both Moving : k\n"
+    net = net.replace("    trans Next", look + "    trans Next", 1)
+    row = verified_late(tmp_path, net, monkeypatch)
+    assert row["other_orders"]["harmless"]
