@@ -81,8 +81,9 @@ class Commands:
                 primitive = self._primitives[symbol.uid]
                 own = 0 if self._takes_time(primitive, argument) else 1
                 return own + self._at_once(argument, inside)
-            case core.Apply() if (calls := self._calls(function[0], function[1], inside)) > 1:
-                return calls * sum(self._at_once(x, inside) for x in (function[0], *function[1]))
+            case core.Apply() if (calls := self._calls(*_applied(e), inside)) > 1:
+                called, arguments = _applied(e)
+                return calls * sum(self._at_once(x, inside) for x in (called, *arguments))
             case core.Var(symbol) if symbol.uid in self._primitives:
                 return 0 if self._takes_time(self._primitives[symbol.uid], None) else 1
             case core.Var(symbol):
@@ -187,7 +188,7 @@ def _handed(e: core.Exp) -> list[core.Exp]:
     """The functions in an expression that are not called where they stand."""
     parts = list(walk(e))
     called = {id(x.function) for x in parts if isinstance(x, core.Apply)}
-    functions = (x for x in parts if isinstance(x, core.Lambda | core.Var))
+    functions = [x for x in parts if isinstance(x, core.Lambda | core.Var)]
     return [x for x in functions if isinstance(x.type, TFun) and id(x) not in called]
 
 
