@@ -170,11 +170,21 @@ def test_whether_a_script_comes_to_a_command(
         ("each (fn _ => act ()) few", MANY),
         ("each (fn _ => ()) few", 0),
         ("(each (fn _ => ()) few; act ())", MANY),
+        ("twice (fn _ => act ())", 2),
+        ("twice (fn _ => twice (fn _ => (act (); act ())))", 8),
+        ("twice act", 2),
+        ("twice (fn _ => ())", 0),
+        ("handed (fn _ => act ())", MANY),
+        ("(twice (fn _ => ()); act ())", 1),
+        ("both (fn _ => act (), fn _ => (act (); act ()))", 6),
+        ("both (fn _ => (), fn _ => ())", 0),
     ],
 )
 def test_commands_along_lists_are_counted(action: str, most: int, tmp_path: Path) -> None:
     lists = "  colset FEW = list INT with 0..7;\n  colset ANY = list INT;\n  var few : FEW;\n  var any : ANY;\n"
     lists += "  fun each f l = List.app f l;\n"
+    lists += "  fun twice f = (f (); f ());\n  fun handed f = twice f;\n"
+    lists += "  fun both (f, g) = (f (); g ());\n"
     page = (
         counting(action, 5)
         .replace("code action", "code input (n, few, any); action")

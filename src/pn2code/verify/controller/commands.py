@@ -81,6 +81,9 @@ class Commands:
                 primitive = self._primitives[symbol.uid]
                 own = 0 if self._takes_time(primitive, argument) else 1
                 return own + self._at_once(argument, inside)
+            case core.Apply() if (calls := self._calls(*_applied(e), inside)) > 1:
+                called, arguments = _applied(e)
+                return calls * sum(self._at_once(x, inside) for x in (called, *arguments))
             case core.Var(symbol) if symbol.uid in self._primitives:
                 return 0 if self._takes_time(self._primitives[symbol.uid], None) else 1
             case core.Var(symbol):
@@ -120,15 +123,31 @@ class Commands:
             return MANY
         return most * found[0] + sum(found[1:])
 
-    def _calls_given(self, function: core.Exp) -> bool:
-        """Whether a function calls one that is its parameter, or that of another one: which is not known."""
-        return any(
+    def _calls(
+        self, function: core.Exp, arguments: Sequence[core.Exp], inside: frozenset[int]
+    ) -> int:
+        """How often a function calls what it is given, if that comes to a command; MANY: that is not known."""
+        handed = [x for argument in arguments for x in _handed(argument)]
+        if not any(self._at_once(x, inside) for x in handed):
+            return 1
+        body = self._reach.body(function.symbol) if isinstance(function, core.Var) else function
+        # Handed on, it may be called as often as somebody else likes.
+        if body is None or any(map(self._is_given, _handed(body))):
+            return MANY
+        return sum(map(self._is_given, walk(body)))
+
+    def _is_given(self, x: core.Exp) -> bool:
+        """Whether it is a parameter that is a function."""
+        return (
             isinstance(x, core.Var)
             and isinstance(x.type, TFun)
             and x.symbol.uid not in self._primitives
             and self._reach.body(x.symbol) is None
-            for x in walk(function)
         )
+
+    def _calls_given(self, function: core.Exp) -> bool:
+        """Whether a function calls one that is its parameter, or that of another one: which is not known."""
+        return any(map(self._is_given, walk(function)))
 
     def _applies(self, function: core.Exp, argument: core.Exp | None = None) -> bool:
         """Whether applying a function calls a primitive in each of its rules."""
@@ -163,6 +182,14 @@ def _applied(e: core.Exp) -> tuple[core.Exp, list[core.Exp]]:
         arguments.insert(0, e.argument)
         e = e.function
     return e, arguments
+
+
+def _handed(e: core.Exp) -> list[core.Exp]:
+    """The functions in an expression that are not called where they stand."""
+    parts = list(walk(e))
+    called = {id(x.function) for x in parts if isinstance(x, core.Apply)}
+    functions = [x for x in parts if isinstance(x, core.Lambda | core.Var)]
+    return [x for x in functions if isinstance(x.type, TFun) and id(x) not in called]
 
 
 _ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3, "List.map": 2}
