@@ -62,8 +62,7 @@ MOST_PROGRAMS = 64
 STALE_S = 6 * 3600.0
 """After that a folder in which something is built belongs to a process that was killed."""
 _BUILDS = "build-"
-_TOP = "runtime"
-_RUNTIME = f"{_TOP}/src"
+_RUNTIME = "runtime/src"
 _LOOK_S = 0.1
 
 
@@ -305,11 +304,7 @@ class _Builder:
         with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
             # Sources of the runtime are a library already, mostly: they are written where they are compiled.
-            read = [f for f in self.runtime if not f.path.endswith(".c") or self._is_whole(f)]
-            if _is_sound(self.library):
-                _written_once(self.library, read, room)
-            else:
-                _put(room, read)
+            _put(room, [f for f in self.runtime if not self._is_of_library(f)])
             _put(room, self.files)
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
@@ -353,7 +348,7 @@ class _Builder:
     def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
         """The library, of objects that were there before and of others."""
         compiled_here = [f for f in self.runtime if f.path.endswith(".c")]
-        _put(room, [f for f in compiled_here if not self._is_whole(f)])
+        _put(room, [f for f in self.runtime if self._is_of_library(f)])
         sources = [f.path for f in compiled_here]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
@@ -395,6 +390,12 @@ class _Builder:
 
     def _is_whole(self, source: OutputFile) -> bool:
         return source.path == f"{_RUNTIME}/{self.host.whole}"
+
+    def _is_of_library(self, file: OutputFile) -> bool:
+        """Whether only the runtime reads it; a source that has the net as a part of itself reads its headers, too."""
+        if file.path.endswith(".c"):
+            return not self._is_whole(file)
+        return not self.host.whole and file.path.startswith(f"{_RUNTIME}/")
 
     def _is_own(self, source: str) -> bool:
         return Path(source).name.startswith(self.host.name)
@@ -488,29 +489,6 @@ def _put(room: Path, files: Sequence[OutputFile]) -> None:
     for f in files:
         with open(f"{room}/{f.path}", "w", encoding="utf-8") as file:  # noqa: PTH123
             file.write(f.text)
-
-
-_WRITTEN: dict[Path, Path] = {}
-"""Folders of this process, by the library to which what is in them belongs."""
-
-
-def _written_once(library: Path, files: Sequence[OutputFile], room: Path) -> None:
-    """Puts a link into a room, to files of the runtime: there are a hundred, the same for each net of this process."""
-    found = _WRITTEN.get(library)
-    if found is None or not (found / _TOP).is_dir():
-        found = Path(tempfile.mkdtemp(prefix=_BUILDS, dir=library.parent))
-        atexit.register(_remove, found, os.getpid())
-        _put(found, files)
-        _WRITTEN[library] = found
-    with suppress(OSError):
-        os.utime(found)  # it is no folder of a process that was killed
-    (room / _TOP).symlink_to(found / _TOP)
-
-
-def _remove(path: Path, owner: int) -> None:
-    """At the end of the process that made it; its forks have the same to do at their ends."""
-    if os.getpid() == owner:
-        shutil.rmtree(path, ignore_errors=True)
 
 
 @lru_cache(maxsize=16)

@@ -66,10 +66,7 @@ def test_the_runtime_is_written_where_it_is_compiled(
         if "-c" in arguments:
             (room / f"{Path(arguments[arguments.index('-c') + 1]).stem}.o").write_text("object")
             return True
-        found = [
-            Path(at, name) for at, _, names in os.walk(room, followlinks=True) for name in names
-        ]
-        there.append({p.relative_to(room).as_posix() for p in found if p.suffix in (".c", ".h")})
+        there.append({p.relative_to(room).as_posix() for p in room.rglob("*.[ch]")})
         (room / "program").write_text("#!/bin/sh\n")
         (room / "program").chmod(0o755)
         return True

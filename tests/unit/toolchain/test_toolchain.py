@@ -248,32 +248,3 @@ def test_a_net_whose_tokens_are_moved_in_many_places_is_large() -> None:
 )
 def test_only_gcc_is_told_what_only_gcc_knows(version: str, flags: tuple[str, ...]) -> None:
     assert c_flags.for_large_nets(version) == flags
-
-
-@pytest.mark.cc
-def test_what_all_nets_include_is_written_once_a_process(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Once there is a library; it goes with the process, and one that was removed meanwhile is written again."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    kept = tmp_path / "pn2code/programs"
-    at_end: list[tuple[object, ...]] = []
-    monkeypatch.setattr(programs.atexit, "register", lambda *x: at_end.append(x))
-
-    def built(text: str) -> list[Path]:
-        d = Diagnostics()
-        main = OutputFile("main.c", f'#include "pn/pn_channel.h"\n{text}', ())
-        with program(HOST, [main], d) as path:
-            assert path is not None, d.items
-            subprocess.run([path], check=True)
-        return list(kept.glob("build-*"))
-
-    assert built("int main(void) { return 0; }\n") == []
-    (written,) = built("int main(void) { return 1 - 1; }\n")
-    assert built("int main(void) { return 2 - 2; }\n") == [written]
-    shutil.rmtree(written)
-    (again,) = built("int main(void) { return 3 - 3; }\n")
-    assert again != written
-    for call, *arguments in at_end:
-        call(*arguments)  # type: ignore[operator]
-    assert list(kept.glob("build-*")) == []
