@@ -144,6 +144,8 @@ def test_computed_delays(delay: str, late: str, tmp_path: Path) -> None:
         ("along ys", "", "(a colour set of lists with a longest length, `with 0..n`, would tell)"),
         ("case xs of [] => () | x :: rest => List.app bore rest", "", "how many items `rest`"),
         ("List.app (alias 1) xs", "", "is computed"),
+        ("(along2 (xs, 1); along2 ([1], 2))", "5 s", ""),
+        ("List.app bore (xs ^^ [1])", "5 s", ""),
     ],
 )
 def test_commands_for_each_item_of_a_list(
@@ -156,6 +158,7 @@ def test_commands_for_each_item_of_a_list(
   fun bore x = drill ();
   fun along l = List.app bore l;
   fun alias x = fn y => drill ();
+  fun along2 (l, n) = List.app bore l;
 """
     net = NET.replace("  val MOVE", f"{HEAD}  val MOVE", 1)
     net = net.replace("  var n, k: INT;", f"{declared}  var n, k: INT;", 1)

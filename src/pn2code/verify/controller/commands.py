@@ -11,7 +11,7 @@ moves take time (`Commands(partition)`), or any of them may take none (`Commands
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
@@ -75,15 +75,17 @@ class Commands:
 
     def _at_once(self, e: core.Exp, inside: frozenset[int]) -> int:
         match e:
-            case core.Apply() if isinstance((function := _applied(e))[0], core.Builtin):
+            case core.Apply() if isinstance((function := applied(e))[0], core.Builtin):
                 return self._of_builtin(function[0], function[1], inside)
             case core.Apply(core.Var(symbol), argument) if symbol.uid in self._primitives:
                 primitive = self._primitives[symbol.uid]
                 own = 0 if self._takes_time(primitive, argument) else 1
                 return own + self._at_once(argument, inside)
-            case core.Apply() if (calls := self._calls(*_applied(e), inside)) > 1:
-                called, arguments = _applied(e)
-                return calls * sum(self._at_once(x, inside) for x in (called, *arguments))
+            case core.Apply():
+                called, arguments = applied(e)
+                given = sum(self._at_once(x, inside) for x in arguments)
+                calls = self._calls(called, arguments) if given else 1
+                return self._at_once(called, inside) + calls * given
             case core.Var(symbol) if symbol.uid in self._primitives:
                 return 0 if self._takes_time(self._primitives[symbol.uid], None) else 1
             case core.Var(symbol):
@@ -109,7 +111,7 @@ class Commands:
         """Of `List.app f l`: as often as the list has items, if that is known."""
         found = [self._at_once(x, inside) for x in arguments]
         first = arguments[0]
-        takes = _ALONG.get(builtin.name)
+        takes = ALONG.get(builtin.name)
         is_function = (
             takes is not None
             or isinstance(first, core.Lambda)
@@ -123,18 +125,15 @@ class Commands:
             return MANY
         return most * found[0] + sum(found[1:])
 
-    def _calls(
-        self, function: core.Exp, arguments: Sequence[core.Exp], inside: frozenset[int]
-    ) -> int:
-        """How often a function calls what it is given, if that comes to a command; MANY: that is not known."""
-        handed = [x for argument in arguments for x in _handed(argument)]
-        if not any(self._at_once(x, inside) for x in handed):
+    def _calls(self, function: core.Exp, arguments: Sequence[core.Exp]) -> int:
+        """How often a function calls what it is given, at least 1; MANY: that is not known."""
+        if not any(map(_handed, arguments)):
             return 1
         body = self._reach.body(function.symbol) if isinstance(function, core.Var) else function
         # Handed on, it may be called as often as somebody else likes.
         if body is None or any(map(self._is_given, _handed(body))):
             return MANY
-        return sum(map(self._is_given, walk(body)))
+        return max(1, sum(map(self._is_given, walk(body))))
 
     def _is_given(self, x: core.Exp) -> bool:
         """Whether it is a parameter that is a function."""
@@ -175,7 +174,7 @@ class Commands:
         return known >= _SHORTEST
 
 
-def _applied(e: core.Exp) -> tuple[core.Exp, list[core.Exp]]:
+def applied(e: core.Exp) -> tuple[core.Exp, list[core.Exp]]:
     """A function, and what it is applied to, one argument after the other."""
     arguments: list[core.Exp] = []
     while isinstance(e, core.Apply):
@@ -192,31 +191,42 @@ def _handed(e: core.Exp) -> list[core.Exp]:
     return [x for x in functions if isinstance(x.type, TFun) and id(x) not in called]
 
 
-_ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3, "List.map": 2}
+ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3, "List.map": 2}
 """How many arguments the functions have that apply one to each item of a list, which comes last."""
 
 
-def longest(e: core.Exp) -> int | None:
-    """The most items that a list can have; None: that is not known."""
+def of_colset(symbol: core.Symbol) -> int | None:
+    """The most items of the list of a variable of the net, as its colour set says; None: any number."""
+    whole = None if symbol.colset is None else symbol.colset.whole
+    if whole is None or whole.kind is not Kind.LIST or not isinstance(whole.high, int):
+        return None
+    return whole.high
+
+
+def longest(e: core.Exp, named: Callable[[core.Symbol], int | None] = of_colset) -> int | None:
+    """The most items that a list can have; None: that is not known.
+
+    Args:
+        e: the list.
+        named: the same of a name.
+    """
     match e:
         case core.Var(symbol=symbol):
-            whole = None if symbol.colset is None else symbol.colset.whole
-            is_list = whole is not None and whole.kind is Kind.LIST
-            return whole.high if is_list and whole and isinstance(whole.high, int) else None
+            return named(symbol)
         case core.ListExp(items):
             return len(items)
         case core.Apply(core.Con(constructor), core.RecordExp(((_, _), (_, others)))) if (
             constructor.name == "::"
         ):
-            return _sum(1, longest(others))
+            return _sum(1, longest(others, named))
         case core.Apply(core.Builtin("List.rev" | "List.tl"), of):
-            return longest(of)
+            return longest(of, named)
         case core.Apply(core.Apply(core.Builtin("List.map"), _), of):
-            return longest(of)
+            return longest(of, named)
         case core.Apply(core.Builtin("List.@"), core.RecordExp(((_, one), (_, other)))):
-            return _sum(longest(one), longest(other))
+            return _sum(longest(one, named), longest(other, named))
         case core.If(_, one, other):
-            both = longest(one), longest(other)
+            both = longest(one, named), longest(other, named)
             return None if both[0] is None or both[1] is None else max(both[0], both[1])
         case core.Con(constructor) if constructor.name == "nil":
             return 0

@@ -17,7 +17,6 @@ from types import MappingProxyType
 from typing import Any
 
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.colsets import Kind
 from pn2code.net.enumerable import size as number_of_values
 from pn2code.net.flat import FlatNet
 from pn2code.net.uses import pattern_variables, walk
@@ -101,16 +100,6 @@ class Durations:
         if number_of_values(variable.colset, MOST_VALUES) is None:
             return None
         return tuple(evaluator.colours.all(variable.colset))
-
-    def longest(self, symbol: core.Symbol) -> int | None:
-        """How many items the list of a variable of the net has at most, as its colour set says; None: any number."""
-        variable = self._variables.get(symbol.uid)
-        if variable is None or variable.colset is None:
-            return None
-        colset = variable.colset.whole
-        if colset.kind is not Kind.LIST or not isinstance(colset.high, int):
-            return None
-        return colset.high
 
     def bind(self, pattern: core.Pat, value: core.Exp, known: Known) -> Known:
         """What is known after a name, or a tuple of names, has been given a value."""

@@ -27,15 +27,13 @@ from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.types import TFun
 from pn2code.net.dump import text_of
 from pn2code.robot_scripts.machine import Machine
-from pn2code.verify.controller.commands import lasts
+from pn2code.verify.controller.commands import ALONG, applied, lasts, longest, of_colset
 from pn2code.verify.controller.durations import MOST_VALUES, NOTHING, Durations, Known
 from pn2code.verify.controller.rounds import ControlStep, Turns, turns
 from pn2code.verify.controller.stops import NoProgramError, machine
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
 _ENDLESS = math.inf
-_ALONG = {"List.app": 2, "List.foldl": 3, "List.foldr": 3}
-"""Functions that are called for each item, and how many arguments they have; the list is the last one."""
 _LONGEST = "a colour set of lists with a longest length, `with 0..n`,"
 
 
@@ -348,12 +346,8 @@ class _Commands:
 
     def _application(self, e: core.Apply, inside: frozenset[int], known: Known) -> Time:
         """A function, and what it is applied to, one argument after the other."""
-        arguments: list[core.Exp] = []
-        function: core.Exp = e
-        while isinstance(function, core.Apply):
-            arguments.insert(0, function.argument)
-            function = function.function
-        if isinstance(function, core.Builtin) and len(arguments) == _ALONG.get(function.name):
+        function, arguments = applied(e)
+        if isinstance(function, core.Builtin) and len(arguments) == ALONG.get(function.name):
             along = self._along(function.name, arguments, inside, known)
             if along is not None:
                 return along
@@ -383,7 +377,7 @@ class _Commands:
         spent = sum((self._of(x, inside, known) for x in others), Time())
         if once.seconds <= 0:
             return spent + once
-        most = self._longest(others[-1])
+        most = longest(others[-1], self._items)
         if most is None:
             many = f"how many items `{text_of(others[-1])}` of `{name}` has"
             return spent + Time(0.0, once.is_open, many, advice=_LONGEST)
@@ -403,31 +397,10 @@ class _Commands:
             return None
         return Time.longest(self._of(rule.body, inside, known) for rule in function.rules)
 
-    def _longest(self, e: core.Exp) -> int | None:
-        """How many items a list has at most; None: it is not known."""
-        match e:
-            case core.ListExp(items):
-                return len(items)
-            case core.Con(constructor) if constructor.name == "nil":
-                return 0
-            case core.Apply(core.Con(constructor), core.RecordExp(((_, _), (_, others)))) if (
-                constructor.name == "::"
-            ):
-                more = self._longest(others)
-                return None if more is None else more + 1
-            case core.Apply(core.Builtin("List.rev" | "List.tl"), of):
-                return self._longest(of)
-            case core.Apply(core.Apply(core.Builtin("List.map"), _), of):
-                return self._longest(of)
-            case core.If(_, then, otherwise):
-                both = self._longest(then), self._longest(otherwise)
-                return None if both[0] is None or both[1] is None else max(both[0], both[1])
-            case core.Var(symbol=symbol):
-                stands = self._given.get(symbol.uid, self._reach.body(symbol))
-                if stands is not None:
-                    return self._longest(stands)
-                return self._durations.longest(symbol)
-        return None
+    def _items(self, symbol: core.Symbol) -> int | None:
+        """The most items of the list that a name stands for; None: it is not known."""
+        stands = self._given.get(symbol.uid, self._reach.body(symbol))
+        return of_colset(symbol) if stands is None else longest(stands, self._items)
 
     def _call(
         self,
