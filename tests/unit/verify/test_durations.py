@@ -145,6 +145,7 @@ def test_computed_delays(delay: str, late: str, tmp_path: Path) -> None:
         ("case xs of [] => () | x :: rest => List.app bore rest", "", "how many items `rest`"),
         ("List.app (alias 1) xs", "", "is computed"),
         ("(along2 (xs, 1); along2 ([1], 2))", "5 s", ""),
+        ("let val p = (ys, 1) in (along2 ([1], 2); along2 p) end", "", "how many items `l`"),
         ("List.app bore (xs ^^ [1])", "5 s", ""),
     ],
 )

@@ -26,6 +26,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.types import TFun
 from pn2code.net.dump import text_of
+from pn2code.net.uses import pattern_variables
 from pn2code.robot_scripts.machine import Machine
 from pn2code.verify.controller.commands import ALONG, applied, lasts, longest, of_colset
 from pn2code.verify.controller.durations import MOST_VALUES, NOTHING, Durations, Known
@@ -422,7 +423,9 @@ class _Commands:
         return Time.longest(ways)
 
     def _stand(self, pattern: core.Pat, value: core.Exp) -> None:
-        """Takes note of what the names of a pattern stand for."""
+        """Takes note of what the names of a pattern stand for, and forgets what they stood for in another call."""
+        for symbol in pattern_variables(pattern):
+            self._given.pop(symbol.uid, None)
         match pattern, value:
             case core.PVar(symbol), _:
                 self._given[symbol.uid] = value
