@@ -15,6 +15,7 @@ from pn2code.ml.core.types import BOOL, TRecord, Type
 from pn2code.ml.typing.matches import Coverage, coverage
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import PARTIAL
+from pn2code.robot_scripts.operations import builtin, cons, empty_list, equal, item_of, others_of
 from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.values import (
     FALSE,
@@ -28,15 +29,9 @@ from pn2code.robot_scripts.values import (
     ScalarShape,
     UnsupportedError,
     Value,
-    builtin,
     choose,
     conjunction,
-    cons,
-    empty_list,
-    equal,
     is_enumeration,
-    item_of,
-    others_of,
     pose,
     scalars_in,
     select,

@@ -16,6 +16,7 @@ from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Line, Node
 from pn2code.robot_scripts.machine import Machine, delayed_tokens
+from pn2code.robot_scripts.operations import logical_not
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.values import (
@@ -25,7 +26,6 @@ from pn2code.robot_scripts.values import (
     UnsupportedError,
     Value,
     conjunction,
-    logical_not,
     scalars_in,
 )
 from pn2code.tdl import tree as t

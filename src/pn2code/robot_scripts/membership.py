@@ -19,15 +19,13 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import Known
+from pn2code.robot_scripts.operations import builtin, item_of, others_of
 from pn2code.robot_scripts.values import (
     Rec,
     Rows,
     Scalar,
     UnsupportedError,
     Value,
-    builtin,
-    item_of,
-    others_of,
     scalars_in,
     select,
 )

@@ -36,6 +36,7 @@ from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node, Repeat
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier, of_stem
 from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.operations import equal, item_of, others_of
 from pn2code.robot_scripts.rounding import rounded
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
@@ -54,11 +55,8 @@ from pn2code.robot_scripts.values import (
     as_quantity,
     as_real,
     choose,
-    equal,
     flatten,
-    item_of,
     make,
-    others_of,
     scalars_in,
     select,
     shape_of_colset,

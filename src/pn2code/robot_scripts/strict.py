@@ -14,7 +14,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Line, Node, Repeat
-from pn2code.robot_scripts.values import conjunction, disjunction, logical_not
+from pn2code.robot_scripts.operations import logical_not
+from pn2code.robot_scripts.values import (
+    conjunction,
+    disjunction,
+)
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import children, expressions_of
 
