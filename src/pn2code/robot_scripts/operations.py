@@ -7,7 +7,7 @@ cons(item, of, span)               # `item :: of`
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
@@ -152,24 +152,31 @@ def _on_rows(name: str, of: Rows, more: Sequence[Value]) -> Value:
         case "List.@":
             (other,) = more
             assert isinstance(other, Rows)
-            return Rows(_joined_columns(of.columns, other.columns))
+            return Rows(_pairs(of.columns, other.columns, _joined))
         case _:
             own = [x for x in more if isinstance(x, Scalar)]
             changed = of.each(lambda s: _on_list(name, [s, *own]))
             return changed if name == "List.nth" else Rows(changed)
 
 
-def _joined_columns(front: Rec, behind: Rec) -> Rec:
-    """The columns of both, by their labels: records in order of declaration meet those in order of their type."""
+def _joined(front: Value, behind: Value) -> Scalar:
+    assert isinstance(front, Scalar)
+    assert isinstance(behind, Scalar)
+    return _on_list("List.@", [front, behind])
+
+
+def _pairs(columns: Rec, other: Rec, join: Callable[[Value, Value], Value]) -> Rec:
+    """Each column joined with what the other one has by its label.
+
+    Records in order of declaration meet those in order of their type.
+    """
     out: list[tuple[str, Value]] = []
-    for label, column in front.fields:
-        other = behind.get(label)
-        if isinstance(column, Rec) and isinstance(other, Rec):
-            out.append((label, _joined_columns(column, other)))
+    for label, column in columns.fields:
+        part = other.get(label)
+        if isinstance(column, Rec) and isinstance(part, Rec):
+            out.append((label, _pairs(column, part, join)))
         else:
-            assert isinstance(column, Scalar)
-            assert isinstance(other, Scalar)
-            out.append((label, _on_list("List.@", [column, other])))
+            out.append((label, join(column, part)))
     return Rec(tuple(out))
 
 
@@ -194,22 +201,11 @@ def cons(item: Value, of: Value, span: Span) -> Scalar | Rows:
         UnsupportedError: scripts have no such list.
     """
     if isinstance(of, Rows) and isinstance(item, Rec):
-        return Rows(_cons_columns(item, of.columns, span))
+        return Rows(_pairs(of.columns, item, lambda column, part: cons(part, column, span)))
     if not isinstance(item, Scalar) or not isinstance(of, Scalar) or of.type not in tdl.LISTS:
         raise UnsupportedError("a list of such values cannot be used in a robot script", span)
     plain = as_real(item) if of.type is tdl.Type.REALS else item
     return Scalar(lists.with_first(plain.exp, of.exp), of.type)
-
-
-def _cons_columns(item: Rec, columns: Rec, span: Span) -> Rec:
-    out: list[tuple[str, Value]] = []
-    for label, column in columns.fields:
-        part = item.get(label)
-        if isinstance(column, Rec) and isinstance(part, Rec):
-            out.append((label, _cons_columns(part, column, span)))
-        else:
-            out.append((label, cons(part, column, span)))
-    return Rec(tuple(out))
 
 
 def empty_list(ml: Type, program: core.Program, span: Span) -> Scalar | Rows:
