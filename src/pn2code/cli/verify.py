@@ -36,7 +36,9 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.subject import Subject
-from pn2code.cli.verify_screen import ending, full, screen
+from pn2code.cli.verify_closing import ending
+from pn2code.cli.verify_full import full
+from pn2code.cli.verify_screen import screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
