@@ -28,13 +28,8 @@ from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import ArcKind, BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
-from pn2code.semantics.game.enabling import GivenUpError
-from pn2code.semantics.game.marking import (
-    BindingElement,
-    Marking,
-    binding_to_json,
-    element_text,
-)
+from pn2code.semantics.game.errors import GivenUpError
+from pn2code.semantics.game.marking import BindingElement, Marking, binding_to_json, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
 from pn2code.semantics.values.data import Timed, is_negative_zero

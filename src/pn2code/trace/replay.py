@@ -32,7 +32,7 @@ from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.evaluation.evaluate import Limits
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import (
     BindingElement,
     Marking,

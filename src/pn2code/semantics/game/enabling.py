@@ -10,15 +10,12 @@ Whatever fails ends it.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
-from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Exp, Lit, Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
@@ -33,10 +30,10 @@ from pn2code.net.flat import (
 )
 from pn2code.net.no_match import no_match_places
 from pn2code.net.total import is_total
-from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
 from pn2code.semantics.evaluation.random import bindings_of
+from pn2code.semantics.game.errors import NoMatchError, one_line, running
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,
@@ -45,99 +42,8 @@ from pn2code.semantics.game.marking import (
     place_text,
     variable_text,
 )
-from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Timed, Value
+from pn2code.semantics.values.data import MlException, Timed, Value
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
-
-
-class GameError(Exception):
-    """The net did something wrong while it ran; it cannot go on.
-
-    Args:
-        message: lower case, without full stop, names in back-ticks.
-        origin: the net element.
-        span: the text in it, when that is known.
-    """
-
-    def __init__(self, message: str, origin: Origin, span: Span | None = None) -> None:
-        self.message = readable(message)
-        super().__init__(self.message)
-        self.origin = origin
-        self.span = span
-        self.is_unavailable = False
-        """Whether it applied what is in CPN Tools, but not here."""
-
-    def __str__(self) -> str:
-        """The message with its place."""
-        return f"{self.origin.location()}: {self.origin.describe()}: {self.message}"
-
-    def report(self, d: Diagnostics) -> None:
-        """As a diagnostic."""
-        d.error(
-            RUNTIME_ERROR,
-            self.message,
-            self.origin,
-            notes=self.notes(),
-            hint=about_files(self.message),
-        )
-
-    def notes(self) -> list[Note]:
-        """The text that raises it, if that is known, with its place."""
-        if self.span is None:
-            return []
-        return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
-
-
-def about_files(message: str) -> str:
-    """What to do about an exception of a file; nothing of others."""
-    if re.search(r"raised (?:the exception )?`(?:IO\.)?Io\b", message) is None:
-        return ""
-    return "the net has no files but those below the folder of `pn2code simulate --files DIR`"
-
-
-class NoMatchError(GameError):
-    """`Bind` was raised where it means that there is no binding (`net.no_match`)."""
-
-
-class GivenUpError(GameError):
-    """The token game gives up before it knows: it does not evaluate for longer, or with more memory."""
-
-
-class running:  # noqa: N801 - a context manager reads as a word
-    """What CPN ML raises while we do something becomes a GameError that names the element.
-
-    Args:
-        origin: the element.
-        doing: what, for the message.
-        part: which part of the element it is, if `origin` does not say it.
-    """
-
-    __slots__ = ("doing", "origin", "part")
-
-    def __init__(self, origin: Origin, doing: str, part: str = "") -> None:
-        self.origin = origin
-        self.doing = doing
-        self.part = part
-
-    def __enter__(self) -> None:
-        """Nothing: this is called for each evaluation."""
-
-    def __exit__(self, kind: object, raised: BaseException | None, trace: object) -> None:
-        """Raise the GameError."""
-        if raised is None:
-            return
-        origin = replace(self.origin, part=self.part) if self.part else self.origin
-        if isinstance(raised, MlException):
-            message = f"{self.doing} raised the exception `{raised}`"
-            raise GameError(message, origin, raised.span) from None
-        if isinstance(raised, MlUnavailable):
-            problem = GameError(f"{self.doing} cannot go on: {raised}", origin)
-            problem.is_unavailable = True
-            raise problem from None
-        if isinstance(raised, MlLimit | RecursionError):
-            raise GivenUpError(f"{self.doing} was given up: {raised}", origin) from None
-        if isinstance(raised, MemoryError):
-            why = "it needs more memory than there is"
-            raise GivenUpError(f"{self.doing} was given up: {why}", origin) from None
 
 
 class wanting(running):  # noqa: N801
@@ -606,7 +512,7 @@ class Enabling:
         for arc in self._inhibitors(t, marking):
             place = self.net.places[arc.place]
             tokens = place_text(self.colours, place.colset, marking.places[arc.place])
-            return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
+            return f"place `{place.name}` inhibits it: it holds {one_line(tokens)}"
         return None
 
     def why_guard_fails(self, t: FlatTransition, binding: Binding) -> str | None:
@@ -624,7 +530,7 @@ class Enabling:
                 return f"{text} is not in the colour set `{s.colset.name}` of variable `{s.name}`"
         for i, guard in enumerate(t.guards):
             if not self._guard(t, i, found):
-                return f"the guard `{_one_line(guard.span.text)}` is false"
+                return f"the guard `{one_line(guard.span.text)}` is false"
         return None
 
     def shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
@@ -635,7 +541,7 @@ class Enabling:
             d.count for d in demands if d.place == missing.place and d.value == missing.value
         )
         tokens = marking.places[missing.place]
-        held = _one_line(place_text(self.colours, c, tokens))
+        held = one_line(place_text(self.colours, c, tokens))
         text = f"place `{place.name}` lacks {wanted}`{readable(self.colours.text(c, missing.value))}: it holds {held}"
         if isinstance(tokens, TimedMultiSet):
             early = f" + {missing.early}" if missing.early else ""
@@ -709,7 +615,3 @@ def _patterns(t: FlatTransition) -> Iterator[Pat]:
 def available(tokens: PlaceMarking, now: float) -> list[Value] | list[Timed]:
     """The tokens of a place that are available at a time."""
     return list(tokens) if isinstance(tokens, MultiSet) else tokens.available(now)
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
