@@ -10,7 +10,7 @@ from pn2code.cell import codes
 from pn2code.cell.config import RobotConfig, SensorConfig
 from pn2code.cell.named_elsewhere import seen_by, table_of
 from pn2code.cell.tables import KeyPath, Tables
-from pn2code.cell_file.geometry import ROBOT
+from pn2code.cell_file.arms import ROBOT
 from pn2code.cell_file.logic import DEVICE, SENSOR
 
 

@@ -19,8 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from pn2code.cell_file.geometry import MOTION, ROBOT, SCENE
+from pn2code.cell_file.arms import MOTION, ROBOT
 from pn2code.cell_file.keys import Section
+from pn2code.cell_file.scene import SCENE
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
