@@ -223,7 +223,7 @@ class Seeing:
 def _open(t: FlatTransition, by_variable: dict[str, str]) -> Iterator[tuple[str, str, bool]]:
     """The variables of a transition that a sensor decides which sees the scene: with it, and whether it is asked first.
 
-    As `robot_scripts.steps` makes scripts.
+    As `robot_scripts.code_segment` makes scripts.
     """
     tried = [s.symbol for s in t.plan if isinstance(s, BindAll | BindRandom)]
     sensed = [s for s in tried if s.name in by_variable]

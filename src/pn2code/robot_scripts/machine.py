@@ -15,7 +15,7 @@ from dataclasses import field
 
 from pn2code.base.frozen import frozen, record
 from pn2code.cell.partition import Channel, Owner, Partition
-from pn2code.diagnostics import Diagnostics, Note
+from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import TCon
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form, Term
@@ -51,6 +51,13 @@ class Step:
     transition: FlatTransition
     takes: tuple[tuple[int, Term, int, int], ...]
     outcomes: tuple[Outcome, ...]
+
+    @property
+    def span(self) -> Span:
+        """For messages about the transition as a whole."""
+        for _, term, _, _ in self.takes:
+            return term.value.span
+        raise AssertionError("a step takes at least the control token")
 
 
 @frozen
