@@ -23,7 +23,7 @@ from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of

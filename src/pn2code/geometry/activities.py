@@ -37,7 +37,8 @@ from pn2code.robot.clamps import (
 from pn2code.robot.commands import CHANGES, Command, Handling, ToolAction
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
-from pn2code.robot.parts import Part, PartChange, PartFault, Parts
+from pn2code.robot.part import Part, PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 

@@ -25,7 +25,7 @@ from pn2code.geometry.in_zones import InZones
 from pn2code.geometry.legs import Leg, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, matrix_of
 
 Answers = frozenset[bool]

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array
 

@@ -16,7 +16,7 @@ from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, describe, difference, pose_of
 
 if TYPE_CHECKING:
-    from pn2code.robot.parts import Part
+    from pn2code.robot.part import Part
 
 
 def tool_in_use(parts: Iterable[Part], robot: str) -> Part | None:

@@ -29,7 +29,8 @@ from pn2code.robot.clamps import (
     taken_along,
 )
 from pn2code.robot.commands import Command, Handling, Move, MoveExternal
-from pn2code.robot.parts import PartChange, PartFault, Parts
+from pn2code.robot.part import PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell

@@ -33,7 +33,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.files_of import files_of
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tcp_path import Arc
 from pn2code.robot.transforms import matrix_of

@@ -32,7 +32,7 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.fake import FakeBackend
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of

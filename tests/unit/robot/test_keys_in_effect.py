@@ -21,7 +21,8 @@ from pn2code.robot.commands import Command, Handling, Measure, MoveAxes, MoveLin
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.geometry import panel_bodies
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.parts import PartFault, Parts
+from pn2code.robot.part import PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import PanelConfig, RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of
