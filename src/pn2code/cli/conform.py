@@ -32,8 +32,8 @@ from pn2code.cli.options import (
 from pn2code.conform.cell import Conformance, conform_cell
 from pn2code.conform.core import CoreReport
 from pn2code.conform.folder import Folder
-from pn2code.conform.robot import RobotReport
 from pn2code.conform.scheme import MOST_STATES
+from pn2code.conform.script_state import RobotReport
 from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 
