@@ -35,7 +35,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition, Role
 from pn2code.registers.recognised import Register, refuse, registers
-from pn2code.robot_scripts.machine import analyse
+from pn2code.robot_scripts.analyse import analyse
 
 _ID = "register-"
 """What the ids of elements begin with that are added."""

@@ -12,8 +12,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Span
-from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import lists, moves
+from pn2code.robot_scripts import codes, lists, moves
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known, known_where

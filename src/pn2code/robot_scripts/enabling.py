@@ -12,8 +12,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import BindAll, BindEquation, BindRandom
-from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import membership
+from pn2code.robot_scripts import codes, membership
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import known_where

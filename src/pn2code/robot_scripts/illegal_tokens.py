@@ -15,11 +15,12 @@ from pn2code.robot_scripts import membership, unread
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import known_where
 from pn2code.robot_scripts.ir import Chain, Line, Node
-from pn2code.robot_scripts.machine import Machine, delayed_tokens
+from pn2code.robot_scripts.machine import Machine
 from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.operations import logical_not
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path
+from pn2code.robot_scripts.tokens import delayed_tokens
 from pn2code.robot_scripts.values import (
     FALSE,
     TRUE,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts.values import (
     Closure,
     Rec,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
-from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import codes
 from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.values import (
     Scalar,

@@ -10,7 +10,7 @@ from collections.abc import Sequence, Set
 
 from pn2code.diagnostics import Note
 from pn2code.net.flat import FlatTransition, Role
-from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import codes
 from pn2code.robot_scripts.code_segment import CodeSegment
 from pn2code.robot_scripts.conditions import all_hold
 from pn2code.robot_scripts.data import Data

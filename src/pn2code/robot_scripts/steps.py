@@ -18,26 +18,21 @@ from dataclasses import dataclass
 
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind
-from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import unread
+from pn2code.robot_scripts import codes, unread
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.code_segment import Acted
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import known_where
 from pn2code.robot_scripts.illegal_tokens import stops
-from pn2code.robot_scripts.ir import (
-    Comment,
-    Line,
-    Node,
-    titled,
-)
-from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
+from pn2code.robot_scripts.ir import Comment, Line, Node, titled
+from pn2code.robot_scripts.machine import Machine, Outcome, Step
 from pn2code.robot_scripts.marks import datum
 from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.quantities import lasting
 from pn2code.robot_scripts.rounding import rounded
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
+from pn2code.robot_scripts.tokens import delayed_tokens
 from pn2code.robot_scripts.values import (
     Env,
     Fields,

@@ -16,8 +16,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL, INT, INTINF, REAL, STRING, TCon, TRecord, Type
-from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import lists
+from pn2code.robot_scripts import codes, lists
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
