@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    NetArgument,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -54,9 +55,7 @@ MOST_NAMES = 8
 
 
 def conform(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     most: Annotated[
         int,
         typer.Option(

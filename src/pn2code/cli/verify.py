@@ -26,6 +26,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    NetArgument,
     SetOption,
     check_kind,
     check_writable,
@@ -96,9 +97,7 @@ _CODES = {"no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}
 
 
 def verify(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     max_states: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Stop after N markings are found.")
     ] = None,
