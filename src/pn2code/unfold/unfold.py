@@ -11,7 +11,6 @@ Example: philosophers `with p1 | .. | p5` in a place `Think` give places `Think[
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import field
 from typing import Any
@@ -29,6 +28,7 @@ from pn2code.semantics.game.marking import Binding, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import MultiSet
+from pn2code.unfold.closure import Closure
 from pn2code.unfold.codes import UNFOLDING_FAULT, UNFOLDING_TOO_LARGE, UNSUPPORTED_UNFOLDING
 from pn2code.unfold.net import Fault, UnfoldedPlace, UnfoldedTransition, Unfolding
 from pn2code.unfold.purity import impure
@@ -179,7 +179,7 @@ class _Search(Enabling):
             return False
 
 
-class _Closure:
+class _Closure(Closure[Value, _Element]):
     def __init__(
         self,
         net: FlatNet,
@@ -188,6 +188,7 @@ class _Closure:
         max_transitions: int,
         progress: Callable[[int, int], None],
     ) -> None:
+        super().__init__(len(net.places))
         self.progress = progress
         self.net = net
         self.game = game
@@ -196,15 +197,9 @@ class _Closure:
         self.max_transitions = max_transitions
         self.search = _Search(net, game.evaluator)
         self.empty = Marking(0, tuple(MultiSet() for _ in net.places))
-        # Known colours of each place: `seen` is what the searches so far have used, `new` what came since.
-        self.seen: list[tuple[list[Value], set[Value]]] = [([], set()) for _ in net.places]
-        self.known: list[set[Value]] = [set() for _ in net.places]
-        self.new: list[list[Value]] = [[] for _ in net.places]
         self.count = 0
-        self.waiting: dict[Token, list[_Element]] = {}
         self.elements: list[_Element] = []
         self.faults: list[_Fault] = []
-        self.ready: deque[_Element] = deque()
 
     def run(self) -> None:
         """The closure."""
@@ -221,13 +216,7 @@ class _Closure:
             if not binding:
                 self.find(t)
         self.activate()
-        while any(self.new):
-            delta = [(list(n), set(n)) for n in self.new]
-            self.new = [[] for _ in self.net.places]
-            whole = [
-                (s[0] + n[0], s[1] | n[1]) if n[0] else s
-                for s, n in zip(self.seen, delta, strict=True)
-            ]
+        for delta, whole in self.rounds():
             for place, fresh in enumerate(delta):
                 for t, i in feeds.get(place, ()) if fresh[0] else ():
                     for j, s in enumerate(terms[t.index]):
@@ -235,7 +224,6 @@ class _Closure:
                         source = self.seen if j < i else delta if j == i else whole
                         self.search.choices[id(arc), s.term] = source[arc.place]
                     self.find(t)
-            self.seen = whole
             self.activate()
 
     def add(self, token: Token) -> None:
@@ -249,10 +237,7 @@ class _Closure:
             raise _TooLargeError(
                 "places", self.max_places, p.origins[0] if p.origins else Origin(self.net.file)
             )
-        self.known[place].add(value)
-        self.new[place].append(value)
-        for element in self.waiting.pop(token, ()):
-            self.wait(element)
+        self.come(token)
 
     def find(self, t: FlatTransition) -> None:
         """Enter the bindings of a transition over the present choices."""
@@ -279,14 +264,6 @@ class _Closure:
             token = demand.place, demand.value
             pre[token] = pre.get(token, 0) + demand.count
         self.wait(_Element(t, binding, pre))
-
-    def wait(self, element: _Element) -> None:
-        """Let an element be ready when all that it demands can be there."""
-        for place, value in element.pre:
-            if value not in self.known[place]:
-                self.waiting.setdefault((place, value), []).append(element)
-                return
-        self.ready.append(element)
 
     def activate(self) -> None:
         """What the ready elements put."""
