@@ -16,26 +16,20 @@ from pn2code.robot_scripts import codes, lists, moves
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known, known_where
-from pn2code.robot_scripts.ir import (
-    Chain,
-    Line,
-    Node,
-    Repeat,
-    own_element,
-)
+from pn2code.robot_scripts.ir import Chain, Line, Node, Repeat, own_element
 from pn2code.robot_scripts.machine import Machine
 from pn2code.robot_scripts.names import Names, of_stem
 from pn2code.robot_scripts.operations import item_of, others_of
 from pn2code.robot_scripts.quantities import lasting, speed_of
+from pn2code.robot_scripts.shapes import ScalarShape
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed
+from pn2code.robot_scripts.unsupported import UnsupportedError
 from pn2code.robot_scripts.values import (
     Env,
     Rec,
     Rows,
     Scalar,
-    ScalarShape,
-    UnsupportedError,
     Value,
     as_quantity,
     choose,

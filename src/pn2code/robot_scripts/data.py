@@ -23,15 +23,10 @@ from pn2code.robot_scripts.ir import Element, place_element, titled
 from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.robot_scripts.names import Names, identifier, small_identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.shapes import Shape, shape_of_colset
 from pn2code.robot_scripts.tokens import initial_tokens, unstamped
-from pn2code.robot_scripts.values import (
-    Shape,
-    UnsupportedError,
-    Value,
-    flatten,
-    make,
-    shape_of_colset,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Value, flatten, make
 from pn2code.tdl import tree as t
 
 

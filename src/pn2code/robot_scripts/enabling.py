@@ -16,23 +16,14 @@ from pn2code.robot_scripts import codes, membership
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import known_where
-from pn2code.robot_scripts.ir import (
-    own_element,
-)
+from pn2code.robot_scripts.ir import own_element
 from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.operations import equal
+from pn2code.robot_scripts.shapes import ScalarShape, shape_of_colset
 from pn2code.robot_scripts.situation import Situation
-from pn2code.robot_scripts.values import (
-    FALSE,
-    Env,
-    Scalar,
-    ScalarShape,
-    UnsupportedError,
-    Value,
-    scalars_in,
-    shape_of_colset,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import FALSE, Env, Scalar, Value, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.paths import all_names

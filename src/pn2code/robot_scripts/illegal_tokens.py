@@ -21,15 +21,8 @@ from pn2code.robot_scripts.operations import logical_not
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.tokens import delayed_tokens
-from pn2code.robot_scripts.values import (
-    FALSE,
-    TRUE,
-    Env,
-    UnsupportedError,
-    Value,
-    conjunction,
-    scalars_in,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import FALSE, TRUE, Env, Value, conjunction, scalars_in
 from pn2code.tdl import tree as t
 
 PathTo = Callable[[Iterable[tuple[core.Exp, bool]], Env], tuple[Path | None, list[Owed]]]

@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.robot_scripts.values import (
-    Closure,
-    Rec,
-    Rows,
-    Scalar,
-    UnsupportedError,
-    Value,
-    select,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Closure, Rec, Rows, Scalar, Value, select
 from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl

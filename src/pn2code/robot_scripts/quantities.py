@@ -9,13 +9,8 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.robot_scripts import codes
 from pn2code.robot_scripts.names import Names
-from pn2code.robot_scripts.values import (
-    Scalar,
-    UnsupportedError,
-    Value,
-    as_quantity,
-    as_real,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Scalar, Value, as_quantity, as_real
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate

@@ -22,15 +22,8 @@ from pn2code.robot_scripts.machine import Outcome, Step
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.steps import StepTranslator, header
 from pn2code.robot_scripts.structure import Branches, Halt, Then, To, Tree
-from pn2code.robot_scripts.values import (
-    FALSE,
-    TRUE,
-    UnsupportedError,
-    Value,
-    conjunction,
-    disjunction,
-    scalars_in,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import FALSE, TRUE, Value, conjunction, disjunction, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import names_in
 from pn2code.tdl.pretty import expression

@@ -30,20 +30,12 @@ from pn2code.robot_scripts.marks import datum
 from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.quantities import lasting
 from pn2code.robot_scripts.rounding import rounded
+from pn2code.robot_scripts.shapes import Fields, Shape
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.tokens import delayed_tokens
-from pn2code.robot_scripts.values import (
-    Env,
-    Fields,
-    Rec,
-    Scalar,
-    Shape,
-    UnsupportedError,
-    as_quantity,
-    flatten,
-    scalars_in,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Env, Rec, Scalar, as_quantity, flatten, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.paths import expressions_of
