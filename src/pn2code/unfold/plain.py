@@ -10,6 +10,7 @@ exception, is left to `unfold`, which has the messages.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import field
 
@@ -43,7 +44,6 @@ from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Data, MlException, MlLimit, Value
 from pn2code.semantics.values.multiset import MultiSet
-from pn2code.unfold.closure import Closure
 from pn2code.unfold.numbered import Environment, NotNumberedError, Numbers
 from pn2code.unfold.unfold import check
 
@@ -263,14 +263,19 @@ class _Match:
         return True
 
 
-class _Closure(Closure[int, _Element]):
+class _Closure:
     def __init__(self, net: FlatNet, game: Game) -> None:
-        super().__init__(len(net.places))
         self.net = net
         self.game = game
         self.numbers = Numbers(game.evaluator)
+        # Known colours of each place: `seen` is what the searches so far have used, `new` what came since.
+        self.seen: list[_Choices] = [([], set()) for _ in net.places]
+        self.known: list[set[int]] = [set() for _ in net.places]
+        self.new: list[list[int]] = [[] for _ in net.places]
         self.count = 0
+        self.waiting: dict[Token, list[_Element]] = {}
         self.elements: list[_Element] = []
+        self.ready: deque[_Element] = deque()
         self.transitions = [_Transition(t, self) for t in net.transitions]
 
     def run(self) -> None:
@@ -287,7 +292,13 @@ class _Closure(Closure[int, _Element]):
             if not t.terms:
                 self.find(t, [None] * len(t.steps))
         self.activate()
-        for delta, whole in self.rounds():
+        while any(self.new):
+            delta = [(n, set(n)) for n in self.new]
+            self.new = [[] for _ in self.net.places]
+            whole = [
+                (s[0] + n[0], s[1] | n[1]) if n[0] else s
+                for s, n in zip(self.seen, delta, strict=True)
+            ]
             for place, fresh in enumerate(delta):
                 for t, i in feeds.get(place, ()) if fresh[0] else ():
                     choices: list[_Choices | None] = [None] * len(t.steps)
@@ -295,6 +306,7 @@ class _Closure(Closure[int, _Element]):
                         of = self.seen if j < i else delta if j == i else whole
                         choices[step] = of[source]
                     self.find(t, choices)
+            self.seen = whole
             self.activate()
 
     def add(self, token: Token) -> None:
@@ -308,12 +320,23 @@ class _Closure(Closure[int, _Element]):
             raise TooLargeError(f"more than {MOST_PLACES:,} places")
         if not self.game.colours.legal(c, self.numbers.values[number]):
             raise NotNumberedError
-        self.come(token)
+        self.known[place].add(number)
+        self.new[place].append(number)
+        for element in self.waiting.pop(token, ()):
+            self.wait(element)
 
     def find(self, t: _Transition, choices: list[_Choices | None]) -> None:
         """Enter the bindings of a transition over the choices."""
         for found in t.bindings(choices, [-1] * len(t.at)):
             self.wait(_Element(t, found.copy(), _together(t.takes, found)))
+
+    def wait(self, element: _Element) -> None:
+        """Let an element be ready when all that it demands can be there."""
+        for place, number in element.pre:
+            if number not in self.known[place]:
+                self.waiting.setdefault((place, number), []).append(element)
+                return
+        self.ready.append(element)
 
     def activate(self) -> None:
         """What the ready elements put."""

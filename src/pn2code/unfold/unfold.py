@@ -11,6 +11,7 @@ Example: philosophers `with p1 | .. | p5` in a place `Think` give places `Think[
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import field
 from typing import Any
@@ -28,7 +29,6 @@ from pn2code.semantics.game.marking import Binding, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import MultiSet
-from pn2code.unfold.closure import Closure
 from pn2code.unfold.codes import UNFOLDING_FAULT, UNFOLDING_TOO_LARGE, UNSUPPORTED_UNFOLDING
 from pn2code.unfold.net import Fault, UnfoldedPlace, UnfoldedTransition, Unfolding
 from pn2code.unfold.purity import impure
@@ -179,7 +179,7 @@ class _Search(Enabling):
             return False
 
 
-class _Closure(Closure[Value, _Element]):
+class _Closure:
     def __init__(
         self,
         net: FlatNet,
@@ -188,7 +188,6 @@ class _Closure(Closure[Value, _Element]):
         max_transitions: int,
         progress: Callable[[int, int], None],
     ) -> None:
-        super().__init__(len(net.places))
         self.progress = progress
         self.net = net
         self.game = game
@@ -197,9 +196,15 @@ class _Closure(Closure[Value, _Element]):
         self.max_transitions = max_transitions
         self.search = _Search(net, game.evaluator)
         self.empty = Marking(0, tuple(MultiSet() for _ in net.places))
+        # Known colours of each place: `seen` is what the searches so far have used, `new` what came since.
+        self.seen: list[tuple[list[Value], set[Value]]] = [([], set()) for _ in net.places]
+        self.known: list[set[Value]] = [set() for _ in net.places]
+        self.new: list[list[Value]] = [[] for _ in net.places]
         self.count = 0
+        self.waiting: dict[Token, list[_Element]] = {}
         self.elements: list[_Element] = []
         self.faults: list[_Fault] = []
+        self.ready: deque[_Element] = deque()
 
     def run(self) -> None:
         """The closure."""
@@ -216,7 +221,13 @@ class _Closure(Closure[Value, _Element]):
             if not binding:
                 self.find(t)
         self.activate()
-        for delta, whole in self.rounds():
+        while any(self.new):
+            delta = [(list(n), set(n)) for n in self.new]
+            self.new = [[] for _ in self.net.places]
+            whole = [
+                (s[0] + n[0], s[1] | n[1]) if n[0] else s
+                for s, n in zip(self.seen, delta, strict=True)
+            ]
             for place, fresh in enumerate(delta):
                 for t, i in feeds.get(place, ()) if fresh[0] else ():
                     for j, s in enumerate(terms[t.index]):
@@ -224,6 +235,7 @@ class _Closure(Closure[Value, _Element]):
                         source = self.seen if j < i else delta if j == i else whole
                         self.search.choices[id(arc), s.term] = source[arc.place]
                     self.find(t)
+            self.seen = whole
             self.activate()
 
     def add(self, token: Token) -> None:
@@ -237,7 +249,10 @@ class _Closure(Closure[Value, _Element]):
             raise _TooLargeError(
                 "places", self.max_places, p.origins[0] if p.origins else Origin(self.net.file)
             )
-        self.come(token)
+        self.known[place].add(value)
+        self.new[place].append(value)
+        for element in self.waiting.pop(token, ()):
+            self.wait(element)
 
     def find(self, t: FlatTransition) -> None:
         """Enter the bindings of a transition over the present choices."""
@@ -264,6 +279,14 @@ class _Closure(Closure[Value, _Element]):
             token = demand.place, demand.value
             pre[token] = pre.get(token, 0) + demand.count
         self.wait(_Element(t, binding, pre))
+
+    def wait(self, element: _Element) -> None:
+        """Let an element be ready when all that it demands can be there."""
+        for place, value in element.pre:
+            if value not in self.known[place]:
+                self.waiting.setdefault((place, value), []).append(element)
+                return
+        self.ready.append(element)
 
     def activate(self) -> None:
         """What the ready elements put."""
