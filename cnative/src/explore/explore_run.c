@@ -6,6 +6,7 @@
 #include "explore_run.h"
 
 #include "explore_report.h"
+#include "explore_telling.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -161,6 +162,8 @@ static void grow_all(ex_run_t *run)
     is_fine = is_fine && (is_settled || ex_store_grow(&run->store, width));
     if (!is_fine) {
         ex_stop(run, EX_MEMORY);
+    } else {
+        ex_telling_measure(run);
     }
     run->is_growing = false;
     run->paused = 0U;

@@ -386,6 +386,8 @@ def _counted_remarks(said: Said) -> Iterator[str]:
 
 
 def _dead(found: Exploration) -> str:
+    if not found.told:
+        return "not known"
     if not found.dead_count:
         return "none" if found.seen.markings else "none was seen"
     first = ", ".join(map(str, found.dead[:MOST_NAMES]))

@@ -509,10 +509,13 @@ static bool begin(ex_run_t *run, ex_level_t *search)
 }
 
 /* States that have been found and not expanded belong to the bounds, too. */
-static void see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bool is_list)
+static bool see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bool is_list)
 {
     ex_worker_t *worker = &run->worker[0];
     for (; chunk != NULL; chunk = is_list ? chunk->next : NULL) {
+        if (ex_is_late(run)) {
+            return false;
+        }
         for (uint32_t i = from; i < chunk->count; i++) {
             ex_key_t key;
             (void)ex_chunk_get(run->level, chunk, i, &key);
@@ -521,21 +524,40 @@ static void see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bo
             }
         }
     }
+    return true;
 }
 
-static void see_rest(ex_run_t *run)
+bool ex_see_rest(ex_run_t *run)
 {
     const ex_level_t *search = run->level;
+    if ((search == NULL) || run->is_searched) {
+        return true;
+    }
     run->worker[0].cx.error = PN_OK; /* has been noted */
-    see_chunks(run, search->now, 0U, true);
-    see_chunks(run, search->next, 0U, true);
-    for (uint32_t i = 0U; i < run->options.threads; i++) {
+    bool is_seen = see_chunks(run, search->now, 0U, true) && see_chunks(run, search->next, 0U, true);
+    for (uint32_t i = 0U; is_seen && (i < run->options.threads); i++) {
         const ex_search_t *own = run->worker[i].search;
-        see_chunks(run, own->out, 0U, run->options.is_depth_first);
-        if (own->expanding != NULL) {
-            see_chunks(run, own->expanding, own->expanding->taken, false);
+        is_seen = (own == NULL)
+                  || (see_chunks(run, own->out, 0U, run->options.is_depth_first)
+                      && ((own->expanding == NULL) || see_chunks(run, own->expanding, own->expanding->taken, false)));
+    }
+    return is_seen;
+}
+
+double ex_rest_measure(ex_worker_t *teller, uint32_t most)
+{
+    const ex_level_t *const level = teller->run->level;
+    const ex_chunk_t *const chunk = (level->now != NULL) ? level->now : level->next;
+    const uint32_t count = (chunk == NULL) ? 0U : ((chunk->count < most) ? chunk->count : most);
+    const double began = ex_clock();
+    for (uint32_t i = 0U; i < count; i++) {
+        ex_key_t key;
+        (void)ex_chunk_get(level, chunk, i, &key);
+        if (ex_load(teller, &key)) {
+            ex_bounds_see(teller);
         }
     }
+    return (count > 0U) ? ((ex_clock() - began) / (double)count) : 0.0;
 }
 
 static void sum_up(ex_run_t *run, const ex_level_t *search)
@@ -598,8 +620,6 @@ bool ex_explore(ex_run_t *run)
     }
     run->seconds = ex_clock() - started;
     run->cpu_seconds = cpu_clock() - cpu_started;
-    if (atomic_load(&run->why) != (int)EX_COMPLETE) {
-        see_rest(run);
-    }
+    run->is_searched = atomic_load(&run->why) == (int)EX_COMPLETE;
     return true;
 }
