@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -189,6 +189,19 @@ class Context:
             yield self.scope
         finally:
             self.scope = outer
+
+    def means_colset(self, structure: str) -> bool:
+        """Whether a structure's name is that of a colour set here; a structure that was declared later hides it."""
+        return structure in self.colsets and not self.scope.declares_structure(structure)
+
+    @contextmanager
+    def with_colsets(self, colsets: Mapping[str, Colset | None]) -> Iterator[None]:
+        """While a functor's body is declared again, the colour sets are those that it saw."""
+        outer, self.colsets = self.colsets, dict(colsets)
+        try:
+            yield
+        finally:
+            self.colsets = outer
 
     @property
     def at_top(self) -> bool:
