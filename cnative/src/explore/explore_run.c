@@ -34,6 +34,13 @@ double ex_clock(void)
     return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
 }
 
+double ex_cpu_clock(void)
+{
+    struct timespec now = { 0, 0 };
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
+}
+
 void ex_stop(ex_run_t *run, ex_why_t why)
 {
     int known = atomic_load(&run->why);

@@ -147,6 +147,8 @@ void ex_fail(ex_worker_t *worker, int64_t transition);
 /* Another part of the work begins; the name is for the progress lines. */
 void ex_phase(ex_run_t *run, const char *phase);
 double ex_clock(void);
+/* Seconds of processor time that all threads have used. */
+double ex_cpu_clock(void);
 /* Seconds from the start after which nothing more is worked out about what was seen, where there is a limit of time. */
 static inline double ex_late_seconds(const ex_run_t *run)
 {

@@ -16,6 +16,7 @@
 #define SAMPLE       512U   /* multi-sets that are looked at to know what one takes */
 #define LEAST_NEEDED 20000U /* fewer take no time that counts */
 #define MARGIN       1.5    /* the colours are more than in the sample, and are sorted and printed, too */
+#define MOST_CROWD   4.0    /* threads without work look the same as threads that wait for a processor */
 
 void ex_telling_make(ex_run_t *run)
 {
@@ -60,6 +61,15 @@ void ex_telling_measure(ex_run_t *run)
     }
 }
 
+/* How much longer things take since others use the processors as well, as it was until now. */
+static double crowd(const ex_run_t *run)
+{
+    const double used = ex_cpu_clock();
+    const double most = (ex_clock() - run->started) * (double)run->options.threads;
+    const double times = (used > 0.0) ? (most / used) : 1.0;
+    return (times < 1.0) ? 1.0 : ((times > MOST_CROWD) ? MOST_CROWD : times);
+}
+
 double ex_telling_seconds(ex_run_t *run)
 {
     const ex_bytes_t *const all = ex_interned(run);
@@ -67,5 +77,5 @@ double ex_telling_seconds(ex_run_t *run)
     ex_progress_t progress = { 0U, 0U, 0U, 0U };
     ex_progress(run, &progress);
     const double rest = atomic_load(&run->seeing) * (double)progress.frontier;
-    return MARGIN * (rest + (atomic_load(&run->telling) * (double)count));
+    return MARGIN * crowd(run) * (rest + (atomic_load(&run->telling) * (double)count));
 }

@@ -441,13 +441,6 @@ static void work(ex_worker_t *worker, void *user)
 
 /* --- the run ------------------------------------------------------------------------------------------------------ */
 
-static double cpu_clock(void)
-{
-    struct timespec now = { 0, 0 };
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
-}
-
 static uint64_t mask_of(uint32_t bytes)
 {
     return (bytes < 8U) ? ((((uint64_t)1U) << (bytes * 8U)) - 1U) : UINT64_MAX;
@@ -603,7 +596,7 @@ bool ex_explore(ex_run_t *run)
         }
     }
     const double started = ex_clock();
-    const double cpu_started = cpu_clock();
+    const double cpu_started = ex_cpu_clock();
     if (begin(run, search)) {
         ex_parallel(run, work, NULL);
     }
@@ -619,7 +612,7 @@ bool ex_explore(ex_run_t *run)
         ex_stop(run, EX_STATES); /* what comes after them was not seen */
     }
     run->seconds = ex_clock() - started;
-    run->cpu_seconds = cpu_clock() - cpu_started;
+    run->cpu_seconds = ex_cpu_clock() - cpu_started;
     run->is_searched = atomic_load(&run->why) == (int)EX_COMPLETE;
     return true;
 }
