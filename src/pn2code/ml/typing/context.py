@@ -39,6 +39,8 @@ from pn2code.ml.typing.inference import (
     to_type,
 )
 
+BY_SOCKETS = "`simulate --sockets`"
+"""Stands in what is said of a function that a run with connections to other programs has."""
 MAX_DEPTH = 250
 """Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
 
@@ -161,7 +163,7 @@ class Context:
 
     def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
         """Says once per element that a function exists in CPN Tools but cannot run here."""
-        without = " without `--sockets`" if "`simulate --sockets`" in reason else ""
+        without = " without `--sockets`" if BY_SOCKETS in reason else ""
         self.warn_once(
             codes.UNSUPPORTED_BUILTIN,
             name,
