@@ -60,14 +60,30 @@ void ex_phase(ex_run_t *run, const char *phase)
     }
 }
 
-static int64_t place_at(const char *origin)
+static bool touches(int64_t transition, uint32_t place)
 {
-    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if (strcmp(pn_net.place[i].multiset->origin, origin) == 0) {
-            return (int64_t)i;
+    const pn_transition_t *const t = (transition >= 0) ? &pn_net.transition[transition] : NULL;
+    for (uint32_t k = 0U; (t != NULL) && (k < t->touched_count); k++) {
+        if (t->touched[k] == place) {
+            return true;
         }
     }
-    return -1;
+    return false;
+}
+
+/* The place that is full. Those of several instances of a page have one origin: it is that of the transition's. */
+static int64_t place_at(const char *origin, int64_t transition)
+{
+    int64_t first = -1;
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        if (strcmp(pn_net.place[i].multiset->origin, origin) == 0) {
+            if (touches(transition, i)) {
+                return (int64_t)i;
+            }
+            first = (first < 0) ? (int64_t)i : first;
+        }
+    }
+    return first;
 }
 
 void ex_fail(ex_worker_t *worker, int64_t transition)
@@ -82,7 +98,7 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
         (void)snprintf(run->error.message, sizeof run->error.message, "%s", cx->error_name);
         (void)snprintf(run->error.where, sizeof run->error.where, "%s", cx->error_origin);
         run->error.kind = is_capacity ? "capacity" : (is_memory ? "memory" : "exception");
-        run->error.place = is_capacity ? place_at(cx->error_origin) : -1;
+        run->error.place = is_capacity ? place_at(cx->error_origin, transition) : -1;
         run->error.transition = transition;
     }
     (void)pthread_mutex_unlock(&run->error_lock);
