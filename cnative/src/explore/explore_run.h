@@ -105,6 +105,7 @@ typedef struct ex_run {
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
     struct ex_level *level;         /* of explore_search.c */
+    _Atomic bool has_begun;         /* the search: what is atomic in level and store may be read by other threads */
     bool is_laid_again;             /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase;    /* for the progress lines */

@@ -202,8 +202,9 @@ static void report(ex_worker_t *worker)
 
 void ex_progress(ex_run_t *run, ex_progress_t *progress)
 {
-    const ex_level_t *search = run->level;
-    const uint64_t states = atomic_load_explicit(&run->store.used, memory_order_relaxed);
+    const bool has_begun = atomic_load(&run->has_begun);
+    const ex_level_t *search = has_begun ? run->level : NULL;
+    const uint64_t states = has_begun ? atomic_load_explicit(&run->store.used, memory_order_relaxed) : 0U;
     progress->states = states;
     if (search != NULL) {
         const uint64_t expanded = atomic_load_explicit(&search->expanded, memory_order_relaxed);
@@ -598,6 +599,7 @@ bool ex_explore(ex_run_t *run)
     const double started = ex_clock();
     const double cpu_started = ex_cpu_clock();
     if (begin(run, search)) {
+        atomic_store(&run->has_begun, true);
         ex_parallel(run, work, NULL);
     }
     sum_up(run, search);
