@@ -16,7 +16,7 @@
 #define SAMPLE       512U   /* multi-sets that are looked at to know what one takes */
 #define LEAST_NEEDED 20000U /* fewer take no time that counts */
 #define MARGIN       1.5    /* the colours are more than in the sample, and are sorted and printed, too */
-#define MOST_CROWD   4.0    /* threads without work look the same as threads that wait for a processor */
+#define MOST_CROWD   2.5    /* threads without work look the same as threads that wait for a processor */
 
 void ex_telling_make(ex_run_t *run)
 {
