@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from helpers.monitors import Spec, with_monitors
 from helpers.netbuilder import write
 from helpers.processes import pn2code
 from pn2code.verify.answers.reasons import raises
@@ -126,6 +127,28 @@ def test_what_is_sent_and_received(tmp_path: Path) -> None:
         )
     assert got == [SENT + b"\x03~42"]
     assert said(outcome) == '1`"hello,130,,true,42,no number"'
+
+
+def test_a_monitor_tells_what_occurs(tmp_path: Path) -> None:
+    """It connects before the first step, sends after each, and closes after the last; a guard may still not."""
+    got: list[bytes] = []
+    with peer(lambda connection: got.append(exactly(connection, 10))) as port:
+        functions = {
+            "Init": f'fun init () = openConnection ("c", "127.0.0.1", {port})',
+            "Predicate": "fun pred (bindelem) = true",
+            "Observer": 'fun obs (bindelem) = let fun f (Top\'Talk (1, {s})) = s | f _ = "" in f bindelem end',
+            "Action": 'fun action s = send ("c", s, stringEncode)',
+            "Stop": 'fun stop () = (send ("c", "end", stringEncode); closeConnection "c")',
+        }
+        spec = Spec("Tell", "User defined", ["Top.Talk"], functions)
+        path = tmp_path / "Talk.cpn"
+        path.write_bytes(with_monitors(net_with('"spoke"'), spec))
+        done = pn2code("simulate", str(path), "--json", "--sockets", "60")
+        assert (done.returncode, done.stderr) == (0, "")
+    assert got == [b"\x05spoke\x03end"]
+    done = pn2code("simulate", str(path), "--json")
+    assert done.returncode == 0
+    assert "warning[unsupported-monitor]: monitor `Tell`" in done.stderr
 
 
 def test_it_can_be_the_server(tmp_path: Path) -> None:

@@ -105,6 +105,17 @@ def test_no_time_is_left_in_a_phase(steps: Asked, phase: str, seen: dict[str, bo
     assert (said["graph"] is not None) == seen["components"]
 
 
+def test_no_time_is_left_for_the_bounds(steps: Asked) -> None:
+    """What was counted is told before the states that were not expanded and the multi-sets are looked at."""
+    whole, _ = steps.say(LINES, "--max-states", 20)
+    found, _ = steps.say(LINES, "--max-states", 20, "--late-in", "bounds")
+    said = found.report
+    assert (found.code, said["complete"], said["why"]) == (3, False, "states")
+    assert "bounds" in whole.report and "bounds" not in said
+    for known in ("nodes", "arcs", "fired", "dead_count", "depth"):
+        assert said[known] == whole.report[known]
+
+
 def test_all_is_seen(steps: Asked) -> None:
     found, answers = steps.say(LINES)
     assert (found.code, found.report["complete"], found.report["seen"]) == (0, True, ALL)

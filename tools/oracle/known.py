@@ -26,7 +26,7 @@ _RULES: tuple[tuple[str, str, str, str], ...] = (
     ("raised", "value", r"\bUT\.col\b", "positions below zero of a union"),
     ("raised", "raised", r"\binteger(De|En)code\b", "another exception of a function of Comms/CPN"),
     ("raised", "value", r"\bVector\.update\b", "an index beyond the end of a vector is not noticed"),
-    ("raised", "*", r"\b(Word32|LargeWord)\.toInt\b.*\.fromInt\b", "the engine's compiler makes nothing of toInt after fromInt"),
+    ("raised", "*", r"\b(Word32|LargeWord)\.toInt\b.*\.(fromInt|toLarge(Word)?X)\b", "the engine's compiler makes nothing of toInt after fromInt"),
     ("*", "*", r"\bReal\.(to|from)ManExp\b", "exponents of zero and of what is not finite"),
     ("value", "value", r"\bReal\.(split|realMod)\b.*(minPos|minNormalPos|E~)", "what is behind the point of the least reals is 0.0 in the engine"),
     ("value", "value", r"\bMath\.(atan|asin|sinh|tanh) \(?~?0\.0\b", "the sign of a zero"),

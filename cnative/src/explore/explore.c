@@ -21,6 +21,7 @@
 #include "explore_bounds.h"
 #include "explore_error.h"
 #include "explore_report.h"
+#include "explore_telling.h"
 #include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
@@ -292,10 +293,23 @@ static void show_progress(ex_run_t *run, watch_t *watch)
     watch->shown = now;
 }
 
-/* After so large a part of the time, and so many seconds more, a process that has not ended says what it has kept, and
- * ends; whoever started it waits for it twice as long. */
-#define LAST_PART    1.05
-#define LAST_SECONDS 0.05
+/* After so large a part of the time until it is late, a process that has not ended says what it has kept, and ends. */
+#define LAST_PART 1.03
+/* The search goes on for so large a part of its time at least, however long it takes to tell what it has seen. */
+#define SEARCH_PART 0.4
+
+/* When the search ends: early enough to tell the bounds of what was seen until now. */
+static double search_end(ex_run_t *run)
+{
+    const char *const phase = atomic_load(&run->phase);
+    double seconds = run->options.max_seconds;
+    if ((phase != NULL) && (strcmp(phase, "explore") == 0)) {
+        const double left = ex_late_seconds(run) - ex_telling_seconds(run);
+        const double least = seconds * SEARCH_PART;
+        seconds = (left >= seconds) ? seconds : ((left > least) ? left : least);
+    }
+    return run->started + seconds;
+}
 
 /* The thread that looks at the clock. */
 static void *keep_watch(void *user)
@@ -311,13 +325,13 @@ static void *keep_watch(void *user)
             show_progress(run, watch);
         }
         if (run->options.max_seconds > 0.0) {
-            const double end = run->started + run->options.max_seconds;
+            const double end = search_end(run);
             if (now >= end) {
                 ex_stop(run, EX_SECONDS);
             } else if (end < until) {
                 until = end;
             }
-            const double last = run->started + (ex_late_seconds(run) * LAST_PART) + LAST_SECONDS;
+            const double last = run->started + (ex_late_seconds(run) * LAST_PART);
             if (now >= last) {
                 ex_report_late();
             } else if (last < until) {
@@ -386,6 +400,7 @@ static bool make(ex_run_t *run)
         }
     }
     run->has_bounds = true;
+    ex_telling_make(run);
     return true;
 }
 

@@ -393,46 +393,41 @@ static bool see_multiset(place_bounds_t *own, const char *text)
     return true;
 }
 
-#define TEXT_SIZE ((size_t)1U << 22)
-#define LOOK      1024U /* multi-sets between two looks at the clock */
+#define LOOK 1024U /* multi-sets between two looks at the clock */
 
-/* The time was over some time ago: what is left to look at may be as much as all that was explored. */
-static bool is_late(const ex_run_t *run)
+bool ex_bounds_see_number(ex_worker_t *worker, uint64_t number, char *buffer)
 {
-    return (run->options.max_seconds > 0.0) && ((ex_clock() - run->started) > ex_late_seconds(run));
+    ex_bounds_t *const bounds = worker->bounds;
+    const ex_bytes_entry_t entry = ex_interned(worker->run)->of[number];
+    pn_text_t text;
+    if (entry.place >= pn_net.place_count) { /* a hole, or a time */
+        return true;
+    }
+    const pn_place_t *const place = &pn_net.place[entry.place];
+    const size_t mark = pn_arena_mark(worker->cx.arena);
+    pn_text_init(&text, buffer, EX_TEXT_SIZE);
+    size_t length = 0U;
+    const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)number, &length);
+    const bool is_fine =
+        (byte != NULL) && (pn_multiset_decode(&worker->cx, place->multiset, worker->marking, byte, length) != SIZE_MAX);
+    pn_multiset_json(place->multiset, worker->marking, &text);
+    place_bounds_t *const own = &bounds->place[entry.place];
+    const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
+    own->arena = (bytes > own->arena) ? bytes : own->arena;
+    pn_arena_release(worker->cx.arena, mark);
+    return is_fine && !text.truncated && see_multiset(own, buffer);
 }
 
 /* All multi-sets that the places which are not packed ever held. */
-static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
+static bool see_interned(ex_run_t *run)
 {
-    ex_worker_t *const worker = &run->worker[0];
     const ex_bytes_t *const all = ex_interned(run);
-    char *const buffer = malloc(TEXT_SIZE);
+    char *const buffer = malloc(EX_TEXT_SIZE);
     bool is_fine = (buffer != NULL);
     const uint64_t count = (all != NULL) ? atomic_load(&all->index.count) : 0U;
+    ex_unload(&run->worker[0]); /* they are decoded into its marking */
     for (uint64_t i = 0U; is_fine && (i < count); i++) {
-        const ex_bytes_entry_t entry = all->of[i];
-        pn_text_t text;
-        if (((i % LOOK) == (LOOK - 1U)) && is_late(run)) {
-            is_fine = false;
-            break;
-        }
-        if (entry.place >= pn_net.place_count) { /* a hole, or a time */
-            continue;
-        }
-        const pn_place_t *const place = &pn_net.place[entry.place];
-        const size_t mark = pn_arena_mark(worker->cx.arena);
-        pn_text_init(&text, buffer, TEXT_SIZE);
-        size_t length = 0U;
-        const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
-        is_fine = (byte != NULL)
-                  && (pn_multiset_decode(&worker->cx, place->multiset, worker->marking, byte, length) != SIZE_MAX);
-        pn_multiset_json(place->multiset, worker->marking, &text);
-        place_bounds_t *const own = &bounds->place[entry.place];
-        const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
-        own->arena = (bytes > own->arena) ? bytes : own->arena;
-        pn_arena_release(worker->cx.arena, mark);
-        is_fine = is_fine && !text.truncated && see_multiset(own, buffer);
+        is_fine = (((i % LOOK) != (LOOK - 1U)) || !ex_is_late(run)) && ex_bounds_see_number(&run->worker[0], i, buffer);
     }
     free(buffer);
     return is_fine;
@@ -476,7 +471,7 @@ static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, cons
 {
     for (uint32_t i = 0U; i < place->multiset->colours; i++) {
         pn_text_t text;
-        pn_text_init(&text, buffer, TEXT_SIZE);
+        pn_text_init(&text, buffer, EX_TEXT_SIZE);
         uint64_t count = 0U;
         if (place->multiset->width == 1U) {
             count = pn_counter(is_upper ? bounds->any : bounds->all, place->multiset->bit, 1U, i);
@@ -555,7 +550,7 @@ void ex_bounds_find(ex_run_t *run)
     if ((bounds == NULL) || bounds->is_found) {
         return;
     }
-    bool is_seen = see_groups(bounds);
+    bool is_seen = ex_see_rest(run) && see_groups(bounds);
     for (uint32_t i = 1U; i < run->options.threads; i++) {
         if (run->worker[i].bounds != NULL) {
             is_seen = is_seen && see_groups(run->worker[i].bounds);
@@ -563,7 +558,7 @@ void ex_bounds_find(ex_run_t *run)
         }
     }
     bounds->is_found = true;
-    bounds->is_known = is_seen && (bounds->states > 0U) && see_interned(run, bounds);
+    bounds->is_known = is_seen && (bounds->states > 0U) && see_interned(run);
 }
 
 bool ex_bounds_are_found(const ex_run_t *run)
@@ -576,7 +571,7 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
 {
     ex_bounds_find(run);
     ex_bounds_t *const bounds = run->worker[0].bounds;
-    char *const buffer = malloc(TEXT_SIZE);
+    char *const buffer = malloc(EX_TEXT_SIZE);
     const bool is_known = (buffer != NULL) && (bounds != NULL) && bounds->is_known;
     (void)fprintf(out, "\"bounds\": %s", is_known ? "[" : "null");
     for (uint32_t p = 0U; is_known && (p < pn_net.place_count); p++) {

@@ -192,6 +192,7 @@ void ex_report_keep(ex_run_t *run)
     }
     keep(run);
     if (run->has_bounds && !ex_bounds_are_found(run)) {
+        ex_phase(run, "bounds");
         ex_bounds_find(run);
         keep(run);
     }

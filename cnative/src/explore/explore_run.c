@@ -6,6 +6,7 @@
 #include "explore_run.h"
 
 #include "explore_report.h"
+#include "explore_telling.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,13 @@ double ex_clock(void)
     return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
 }
 
+double ex_cpu_clock(void)
+{
+    struct timespec now = { 0, 0 };
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
+}
+
 void ex_stop(ex_run_t *run, ex_why_t why)
 {
     int known = atomic_load(&run->why);
@@ -52,14 +60,30 @@ void ex_phase(ex_run_t *run, const char *phase)
     }
 }
 
-static int64_t place_at(const char *origin)
+static bool touches(int64_t transition, uint32_t place)
 {
-    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if (strcmp(pn_net.place[i].multiset->origin, origin) == 0) {
-            return (int64_t)i;
+    const pn_transition_t *const t = (transition >= 0) ? &pn_net.transition[transition] : NULL;
+    for (uint32_t k = 0U; (t != NULL) && (k < t->touched_count); k++) {
+        if (t->touched[k] == place) {
+            return true;
         }
     }
-    return -1;
+    return false;
+}
+
+/* The place that is full. Those of several instances of a page have one origin: it is that of the transition's. */
+static int64_t place_at(const char *origin, int64_t transition)
+{
+    int64_t first = -1;
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        if (strcmp(pn_net.place[i].multiset->origin, origin) == 0) {
+            if (touches(transition, i)) {
+                return (int64_t)i;
+            }
+            first = (first < 0) ? (int64_t)i : first;
+        }
+    }
+    return first;
 }
 
 void ex_fail(ex_worker_t *worker, int64_t transition)
@@ -74,7 +98,7 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
         (void)snprintf(run->error.message, sizeof run->error.message, "%s", cx->error_name);
         (void)snprintf(run->error.where, sizeof run->error.where, "%s", cx->error_origin);
         run->error.kind = is_capacity ? "capacity" : (is_memory ? "memory" : "exception");
-        run->error.place = is_capacity ? place_at(cx->error_origin) : -1;
+        run->error.place = is_capacity ? place_at(cx->error_origin, transition) : -1;
         run->error.transition = transition;
     }
     (void)pthread_mutex_unlock(&run->error_lock);
@@ -161,6 +185,8 @@ static void grow_all(ex_run_t *run)
     is_fine = is_fine && (is_settled || ex_store_grow(&run->store, width));
     if (!is_fine) {
         ex_stop(run, EX_MEMORY);
+    } else {
+        ex_telling_measure(run);
     }
     run->is_growing = false;
     run->paused = 0U;

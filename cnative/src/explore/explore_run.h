@@ -70,6 +70,10 @@ typedef struct ex_run {
     ex_store_t store; /* of approximations: of hashes, or `used` alone */
     ex_bits_t bits;
     ex_worker_t *worker; /* options.threads of them */
+    ex_worker_t
+        *teller; /* one more that explores nothing, to measure what telling takes; NULL: there is all the time */
+    _Atomic double telling; /* seconds for one multi-set; 0: not known, or too few to count */
+    _Atomic double seeing;  /* the same for a state that has not been expanded */
     ex_key_t initial;
     double started;  /* seconds of the monotonic clock */
     _Atomic int why; /* ex_why_t: EX_COMPLETE until something has happened */
@@ -101,6 +105,7 @@ typedef struct ex_run {
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
     struct ex_level *level;         /* of explore_search.c */
+    _Atomic bool has_begun;         /* the search: what is atomic in level and store may be read by other threads */
     bool is_laid_again;             /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase;    /* for the progress lines */
@@ -115,6 +120,7 @@ typedef struct ex_run {
     struct ex_graph *graph;       /* of explore_graph.c; NULL: none */
     struct ex_bindings *bindings; /* of explore_bindings.c; NULL: none are told */
     _Atomic bool has_avoided;     /* states have not been expanded, as was asked for */
+    bool is_searched;             /* the search has come to its end: no state is left that was not expanded */
     bool is_seen_whole;           /* all states have been expanded, and none was taken for another one */
     bool has_arcs;                /* the graph of them has been made, with all arcs */
     bool has_components;          /* and gone through: components, home, liveness, fairness */
@@ -141,10 +147,18 @@ void ex_stop(ex_run_t *run, ex_why_t why);
 void ex_fail(ex_worker_t *worker, int64_t transition);
 /* Another part of the work begins; the name is for the progress lines. */
 void ex_phase(ex_run_t *run, const char *phase);
+double ex_clock(void);
+/* Seconds of processor time that all threads have used. */
+double ex_cpu_clock(void);
 /* Seconds from the start after which nothing more is worked out about what was seen, where there is a limit of time. */
 static inline double ex_late_seconds(const ex_run_t *run)
 {
     return (run->options.late_seconds > 0.0) ? run->options.late_seconds : ((run->options.max_seconds * 1.1) + 1.0);
+}
+/* The time was over some time ago: what is left to look at may be as much as all that was explored. */
+static inline bool ex_is_late(const ex_run_t *run)
+{
+    return (run->options.max_seconds > 0.0) && ((ex_clock() - run->started) > ex_late_seconds(run));
 }
 /* Whether the store has keys of one word. */
 static inline bool ex_has_words(const ex_run_t *run)
@@ -163,7 +177,6 @@ static inline bool ex_is_stopping(const ex_run_t *run)
 {
     return atomic_load_explicit(&run->is_stopping, memory_order_relaxed);
 }
-double ex_clock(void);
 /* Calls `work` on each worker, in a thread of its own when there are several, and waits for all of them. */
 void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), void *user);
 
@@ -178,5 +191,9 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress);
 
 /* The exploration: fills the results. False when it could not begin. */
 bool ex_explore(ex_run_t *run);
+/* After it: the states that were found and not expanded belong to the bounds, too. False: there is no time for it. */
+bool ex_see_rest(ex_run_t *run);
+/* While all threads pause: seconds that one of them takes, of so many at most; 0: there is none to be seen. */
+double ex_rest_measure(ex_worker_t *teller, uint32_t most);
 
 #endif /* EXPLORE_RUN_H */

@@ -191,7 +191,8 @@ def simulate(
     limit = _time(until, opened)
     _check_trace(trace, replay, Path(opened.flat.file))
     d = Diagnostics()
-    program = monitors_of(opened.examined, d) if monitors else None
+    connected = sockets is not None
+    program = monitors_of(opened.examined, d, connected=connected) if monitors else None
     found: Replications | None = None
     with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
         request = Request(

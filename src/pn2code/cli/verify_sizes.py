@@ -39,7 +39,7 @@ def sizes_of(said: Said) -> Iterator[str]:
         )
     if found.reductions:
         yield from row("Reduced by", ", ".join(found.reductions))
-    yield from row("Dead markings", _dead(found))
+    yield from row("Dead markings", dead_markings(found))
     if found.graph is not None:
         every = found.graph.home_count == found.nodes
         yield from row("Home markings", "all" if every else f"{found.graph.home_count:,}")
@@ -124,7 +124,10 @@ def counted_remarks(said: Said) -> Iterator[str]:
         )
 
 
-def _dead(found: Exploration) -> str:
+def dead_markings(found: Exploration) -> str:
+    """How many dead markings there are, and the first of them."""
+    if not found.told:
+        return "not known"
     if not found.dead_count:
         return "none" if found.seen.markings else "none was seen"
     first = ", ".join(map(str, found.dead[:MOST_NAMES]))

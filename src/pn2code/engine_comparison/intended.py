@@ -38,7 +38,7 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`CS.col` of a union at positions below zero** may give the last constant constructor in the engine; here it raises `CPN'Error`.
 * **`DynamicArray.subArray`** gives a part of an array; in the engine it raises `Subscript` or `Size`. `DynamicArray.collate` of equal arrays is `EQUAL`, in the engine `LESS`.
 * **`Word32.toInt (Word32.fromInt n)`** raises `Overflow` for n below zero, as `Word32.toInt` of such a word does; the engine's compiler makes nothing
-  of the two, and gives n. A structure declared inside `let` is accepted, and so are `op List.@` and a blank in `# [1, 2]`.
+  of the two, and gives n (and ~1 of `Word32.toInt (Word.toLargeX 0wx7FFFFFFF)`). A structure declared inside `let` is accepted, and so are `op List.@` and a blank in `# [1, 2]`.
 * **`Word64.min`** is the smaller one; in the engine it is the larger one. `Word64.scan` takes no sign, and no blank after `0w`, as that of the other
   words; the engine takes both. `Int64.fromString` reads numbers of 64 bits; the engine raises `Overflow` above 2,147,483,647.
 * **`Real.nextAfter`** works; SML/NJ raises `Fail`. `String.fromCString` reads up to the first character that it cannot read; SML/NJ gives `NONE`.

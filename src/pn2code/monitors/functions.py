@@ -20,6 +20,7 @@ from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, SourceText, S
 from pn2code.ml.core.terms import Con, Dec, Let, RecBind, RecordExp, Symbol, Var
 from pn2code.ml.core.types import label_key, record
 from pn2code.ml.elaborate import Elaborator
+from pn2code.ml.typing.context import BY_SOCKETS
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.monitors.kinds import COLLECTORS, Kind, Monitor, ml_name
 from pn2code.net import generative
@@ -120,11 +121,23 @@ def _statistic(statistic: Callable[[str, str], Value], identity: str, name: str)
 
 
 def elaborate(
-    monitors: Sequence[Monitor], flat: FlatNet, elaborator: Elaborator, d: Diagnostics
+    monitors: Sequence[Monitor],
+    flat: FlatNet,
+    elaborator: Elaborator,
+    d: Diagnostics,
+    *,
+    connected: bool = False,
 ) -> MonitorProgram:
     """Checks the functions of all monitors; those that are wrong are warned of and left out.
 
     A monitor may use collectors that stand after it in the file: those that fail are tried again.
+
+    Args:
+        monitors: of the net.
+        flat: the net.
+        elaborator: that has seen its declarations.
+        d: gets the warnings.
+        connected: whether a run has connections to other programs; if not, monitors that use some are left out.
     """
     done: dict[str, Checked] = {}
     declarations: list[Dec] = []
@@ -136,7 +149,7 @@ def elaborate(
             left = []
             for monitor in waiting:
                 own = Diagnostics()
-                checked, made = _Functions(monitor, flat, elaborator, own).check()
+                checked, made = _Functions(monitor, flat, elaborator, own, connected).check()
                 if checked is None:
                     problems[monitor.id] = own.items
                     left.append(monitor)
@@ -187,8 +200,16 @@ def _report(monitor: Monitor, problems: Iterable[Diagnostic], d: Diagnostics) ->
 class _Functions:
     """The functions of one monitor."""
 
-    def __init__(self, m: Monitor, flat: FlatNet, elaborator: Elaborator, d: Diagnostics) -> None:
+    def __init__(
+        self,
+        m: Monitor,
+        flat: FlatNet,
+        elaborator: Elaborator,
+        d: Diagnostics,
+        connected: bool,
+    ) -> None:
         self.m = m
+        self.connected = connected
         self.flat = flat
         self.elaborator = elaborator
         self.d = d
@@ -226,7 +247,7 @@ class _Functions:
         if not self.d.has_errors:
             declarations = (*self.flat.program.declarations, *inner.declarations)
             generative.refuse_beside(declarations, (), self.d)
-        if self.d.has_errors or any(i.code.startswith("unsupported-") for i in self.d):
+        if self.d.has_errors or any(map(self.is_unsupported, self.d)):
             return None, ()
         symbols = {name: inner.globals[f"CPN'{name}"] for name in self.types(observed)}
         tags = {constructor(t): tag for tag, t in enumerate(self.transitions)}
@@ -235,6 +256,12 @@ class _Functions:
             tokens = {name: inner.globals[f"CPN'tokens'{tag}"] for name, tag in tags.items()}
         span = _span(inner.declarations)
         return Checked(m, symbols, observed, tags, tokens, span), inner.declarations
+
+    def is_unsupported(self, item: Diagnostic) -> bool:
+        """Whether it says that something cannot run here."""
+        return item.code.startswith("unsupported-") and not (
+            self.connected and BY_SOCKETS in item.message
+        )
 
     def gives_tokens(self, declarations: Sequence[Dec], observed: str) -> bool:
         """Whether all that the monitor sees is one unit or number at occurrences (`Checked.tokens`)."""

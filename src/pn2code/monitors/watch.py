@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import field, replace
 from typing import Any
 
@@ -332,8 +333,11 @@ class Watch:
     def _call(self, m: _Running, name: str, argument: Value) -> Value:
         origin = replace(m.monitor.origin, part=f"function `{name}`")
         with running(origin, f"function `{name}` of monitor `{m.monitor.name}`"):
+            connections = self.game.evaluator.files.connections
+            once = nullcontext() if connections is None else connections.computed_once()
             try:
-                return self.game.evaluator.apply(m.functions[name], argument)
+                with once:
+                    return self.game.evaluator.apply(m.functions[name], argument)
             except MlUnavailable as unavailable:
                 raise _Unavailable(str(unavailable)) from None
 

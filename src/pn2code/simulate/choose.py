@@ -38,15 +38,23 @@ class Wish(Enum):
     ANY = "any"
 
 
-def monitors_of(examined: Examined, d: Diagnostics) -> MonitorProgram | None:
-    """The monitors of a net, ready for a request; None when it has none that is enabled."""
+def monitors_of(
+    examined: Examined, d: Diagnostics, *, connected: bool = False
+) -> MonitorProgram | None:
+    """The monitors of a net, ready for a request; None when it has none that is enabled.
+
+    Args:
+        examined: the net.
+        d: gets the warnings.
+        connected: whether the run has connections to other programs (`Request.sockets`).
+    """
     if examined.document is None or examined.flat is None or examined.typed is None:
         return None
     found = resolve(examined.document, examined.flat, d)
     elaborator = examined.typed.elaborator
     if not found or elaborator is None:
         return None
-    program = elaborate(found, examined.flat, elaborator, d)
+    program = elaborate(found, examined.flat, elaborator, d, connected=connected)
     return program if program.monitors else None
 
 

@@ -248,6 +248,83 @@ def test_large_matches_are_looked_at_or_left() -> None:
     assert not m.d.has_errors
 
 
+STRUCTURES = {
+    "ORD_MAP": ("ListMapFn (KEY)", "RedBlackMapFn (KEY)", "IntListMap", "WordRedBlackMap", "AtomMap"),
+    "ORD_SET": ("ListSetFn (KEY)", "SplaySetFn (KEY)", "IntBinarySet", "WordRedBlackSet", "AtomSet"),
+    "MONO_HASH_TABLE": ("HashTableFn (HASHED)", "IntHashTable", "WordHashTable", "AtomTable"),
+    "MONO_PRIORITYQ": ("LeftPriorityQFn (RANK)",), "HASH_TABLE": ("HashTable",), "FIFO": ("Fifo",), "QUEUE": ("Queue",),
+    "ATOM": ("Atom",), "LIST_SORT": ("ListMergeSort",), "ARRAY_SORT": ("ArrayQSort",), "LIST_XPROD": ("ListXProd",),
+    "PROP_LIST": ("PropList",), "UREF": ("URef", "SimpleURef"), "DYNAMIC_ARRAY": ("DynamicArray",),
+}  # fmt: skip
+KEYS = """
+structure KEY : ORD_KEY = struct type ord_key = string val compare = String.compare end
+structure HASHED : HASH_KEY = struct
+  type hash_key = string val hashVal = HashString.hashString fun sameKey (a : string, b) = a = b
+end
+structure RANK : PRIORITY = struct
+  type priority = int val compare = Int.compare type item = int fun priority n = n
+end
+"""
+
+
+@pytest.mark.parametrize("signature", sorted(STRUCTURES))
+def test_what_signatures_of_the_library_stand_for(signature: str) -> None:
+    """Each was asked of the engine, with `:` and with `:>`."""
+    for structure in STRUCTURES[signature]:
+        for ascribed in (":", ":>"):
+            text = f"{KEYS if '(' in structure else ''}structure S {ascribed} {signature} = {structure}"
+            assert errors(text) == [], text
+
+
+def test_a_functor_may_take_any_map_of_the_library() -> None:
+    functor = """
+      functor Count (M : ORD_MAP where type Key.ord_key = int) = struct
+        fun add (n, m) = M.insert (m, n, getOpt (M.find (m, n), 0) + 1)
+        fun of_list l = M.listItemsi (List.foldl add M.empty l)
+      end
+    """
+    for structure in ("IntListMap", "IntRedBlackMap"):
+        text = f"{functor} structure C = Count ({structure})"
+        assert value(f"{text} val it = C.of_list [3, 1, 3] = [(1, 1), (3, 2)]") is True
+    assert errors(f"{functor} structure C = Count (WordRedBlackMap)") != []
+
+
+def test_a_colour_set_may_have_the_name_of_such_a_signature() -> None:
+    d = diagnose(
+        "net N\n  standard\n  colset QUEUE = list INT;\n  colset FIFO = list INT;\n  var q : QUEUE;\n"
+        "  page Top\n    place P : QUEUE = 1`[1]\n    place Q : FIFO\n"
+        "    trans T\n      in P : q\n      out Q : rev q\n"
+    )
+    assert not d.has_errors
+
+
+@pytest.mark.parametrize(
+    ("declarations", "wanted"),
+    [
+        ("functor F (E : sig val ord : int -> bool end) = struct val it = E.ord 1 end structure A = F (struct fun ord n = n > 0 end)", "A.it"),
+        ("structure E = struct fun ord (_ : int) = true end", "E.ord 3"),
+        ("structure S = struct structure E = struct val ord = true end val it = E.ord end", "S.it"),
+    ],
+)  # fmt: skip
+def test_a_structure_hides_a_colour_set_of_its_name(declarations: str, wanted: str) -> None:
+    """`E` is a colour set; in the engine that is a structure like others."""
+    assert value(f"{declarations} val it = {wanted}") is True
+
+
+def test_functors_of_the_library_do_not_see_the_colour_sets_of_a_net() -> None:
+    """Their parameters are called `K`, `H` and `P`, and they use structures of the library."""
+    d = diagnose(
+        "net N\n  standard\n"
+        "  colset K = int;\n  colset H = int;\n  colset P = int;\n  colset List = list INT;\n"
+        f"  {' '.join(KEYS.split())};\n"
+        "  structure A = ListMapFn (KEY);\n  structure B = HashTableFn (HASHED);\n"
+        "  structure C = LeftPriorityQFn (RANK);\n  structure D = RedBlackSetFn (KEY);\n"
+        '  val n = C.numItems (C.fromList [3, 1]) + A.numItems (A.insert (A.empty, "a", 1));\n'
+        "  page Top\n    place Q : K = 1`n\n"
+    )
+    assert [x.message for x in d.errors] == []
+
+
 def test_a_functor_that_cpn_tools_has_is_refused_by_name() -> None:
     d = diagnose(
         "net N\n  standard\n"

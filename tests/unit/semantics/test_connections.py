@@ -55,7 +55,7 @@ def test_a_wait_ends(doing: str, is_interrupted: bool) -> None:
     connections = Connections(
         60 if is_interrupted else 0.3, (lambda: next(asked)) if is_interrupted else bool
     )
-    with peer(SEGMENTS if doing == "receive" else b"") as port, connections.in_code():
+    with peer(SEGMENTS if doing == "receive" else b"") as port, connections.computed_once():
         connections.open("c", "127.0.0.1", port)
         why = "when the run was interrupted" if is_interrupted else r"within 0.3 s \(`--sockets`\)"
         with pytest.raises(MlUnavailable, match=why):
@@ -69,7 +69,7 @@ def test_a_wait_ends(doing: str, is_interrupted: bool) -> None:
 def test_a_host_that_is_none() -> None:
     connections = Connections(1)
     for host in ("a\0b", "x" * 300):
-        with connections.in_code(), pytest.raises(ConnectionProblem) as problem:
+        with connections.computed_once(), pytest.raises(ConnectionProblem) as problem:
             connections.open("c", host, 9)
         assert problem.value.exception == "BadAddr"
 
@@ -82,7 +82,7 @@ def test_more_files_than_select_knows() -> None:
     held = [socket.socket() for _ in range(1030)]
     connections = Connections(10)
     try:
-        with peer(b"\x02hi") as port, connections.in_code():
+        with peer(b"\x02hi") as port, connections.computed_once():
             connections.open("c", "127.0.0.1", port)
             assert connections.receive("c") == b"hi"
             connections.close_all()

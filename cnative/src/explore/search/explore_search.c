@@ -202,8 +202,9 @@ static void report(ex_worker_t *worker)
 
 void ex_progress(ex_run_t *run, ex_progress_t *progress)
 {
-    const ex_level_t *search = run->level;
-    const uint64_t states = atomic_load_explicit(&run->store.used, memory_order_relaxed);
+    const bool has_begun = atomic_load(&run->has_begun);
+    const ex_level_t *search = has_begun ? run->level : NULL;
+    const uint64_t states = has_begun ? atomic_load_explicit(&run->store.used, memory_order_relaxed) : 0U;
     progress->states = states;
     if (search != NULL) {
         const uint64_t expanded = atomic_load_explicit(&search->expanded, memory_order_relaxed);
@@ -441,13 +442,6 @@ static void work(ex_worker_t *worker, void *user)
 
 /* --- the run ------------------------------------------------------------------------------------------------------ */
 
-static double cpu_clock(void)
-{
-    struct timespec now = { 0, 0 };
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
-}
-
 static uint64_t mask_of(uint32_t bytes)
 {
     return (bytes < 8U) ? ((((uint64_t)1U) << (bytes * 8U)) - 1U) : UINT64_MAX;
@@ -509,10 +503,13 @@ static bool begin(ex_run_t *run, ex_level_t *search)
 }
 
 /* States that have been found and not expanded belong to the bounds, too. */
-static void see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bool is_list)
+static bool see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bool is_list)
 {
     ex_worker_t *worker = &run->worker[0];
     for (; chunk != NULL; chunk = is_list ? chunk->next : NULL) {
+        if (ex_is_late(run)) {
+            return false;
+        }
         for (uint32_t i = from; i < chunk->count; i++) {
             ex_key_t key;
             (void)ex_chunk_get(run->level, chunk, i, &key);
@@ -521,21 +518,40 @@ static void see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bo
             }
         }
     }
+    return true;
 }
 
-static void see_rest(ex_run_t *run)
+bool ex_see_rest(ex_run_t *run)
 {
     const ex_level_t *search = run->level;
+    if ((search == NULL) || run->is_searched) {
+        return true;
+    }
     run->worker[0].cx.error = PN_OK; /* has been noted */
-    see_chunks(run, search->now, 0U, true);
-    see_chunks(run, search->next, 0U, true);
-    for (uint32_t i = 0U; i < run->options.threads; i++) {
+    bool is_seen = see_chunks(run, search->now, 0U, true) && see_chunks(run, search->next, 0U, true);
+    for (uint32_t i = 0U; is_seen && (i < run->options.threads); i++) {
         const ex_search_t *own = run->worker[i].search;
-        see_chunks(run, own->out, 0U, run->options.is_depth_first);
-        if (own->expanding != NULL) {
-            see_chunks(run, own->expanding, own->expanding->taken, false);
+        is_seen = (own == NULL)
+                  || (see_chunks(run, own->out, 0U, run->options.is_depth_first)
+                      && ((own->expanding == NULL) || see_chunks(run, own->expanding, own->expanding->taken, false)));
+    }
+    return is_seen;
+}
+
+double ex_rest_measure(ex_worker_t *teller, uint32_t most)
+{
+    const ex_level_t *const level = teller->run->level;
+    const ex_chunk_t *const chunk = (level->now != NULL) ? level->now : level->next;
+    const uint32_t count = (chunk == NULL) ? 0U : ((chunk->count < most) ? chunk->count : most);
+    const double began = ex_clock();
+    for (uint32_t i = 0U; i < count; i++) {
+        ex_key_t key;
+        (void)ex_chunk_get(level, chunk, i, &key);
+        if (ex_load(teller, &key)) {
+            ex_bounds_see(teller);
         }
     }
+    return (count > 0U) ? ((ex_clock() - began) / (double)count) : 0.0;
 }
 
 static void sum_up(ex_run_t *run, const ex_level_t *search)
@@ -581,8 +597,9 @@ bool ex_explore(ex_run_t *run)
         }
     }
     const double started = ex_clock();
-    const double cpu_started = cpu_clock();
+    const double cpu_started = ex_cpu_clock();
     if (begin(run, search)) {
+        atomic_store(&run->has_begun, true);
         ex_parallel(run, work, NULL);
     }
     sum_up(run, search);
@@ -597,9 +614,7 @@ bool ex_explore(ex_run_t *run)
         ex_stop(run, EX_STATES); /* what comes after them was not seen */
     }
     run->seconds = ex_clock() - started;
-    run->cpu_seconds = cpu_clock() - cpu_started;
-    if (atomic_load(&run->why) != (int)EX_COMPLETE) {
-        see_rest(run);
-    }
+    run->cpu_seconds = ex_cpu_clock() - cpu_started;
+    run->is_searched = atomic_load(&run->why) == (int)EX_COMPLETE;
     return true;
 }

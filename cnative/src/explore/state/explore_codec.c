@@ -574,8 +574,5 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
 
 const ex_bytes_t *ex_interned(const ex_run_t *run)
 {
-    for (uint32_t i = 0U; i < run->options.threads; i++) {
-        ex_unload(&run->worker[i]); /* the caller decodes into these markings */
-    }
     return run->codec->has_cells ? &run->codec->bytes : NULL;
 }

@@ -3,7 +3,7 @@
 Each has a file `NAME.sml` here, or is made by a functor that has one (`MADE`). A net's text that mentions a name gets
 its declarations in front of it, and those of the names that they mention. What SML/NJ has in structures of the Basis
 library besides is in `more/NAME.sml`, whose structure `NAME` opens the other; it comes when one of its own functions is
-mentioned: `List.mapi`.
+mentioned: `List.mapi`. Signatures that stand for several structures (`ORD_MAP`) are in `signatures/NAME.sml`.
 """
 
 from __future__ import annotations
@@ -79,7 +79,8 @@ def _reals(kind: str) -> str:
 def _table(name: str, key: str, hashed: str, same: str = "op =") -> str:
     """The declaration of hash tables with keys of one type."""
     return (
-        f"structure {name} = struct\n    structure Key = struct type hash_key = {key} end\n"
+        f"structure {name} = struct\n    structure Key = struct type hash_key = {key}\n"
+        f"        val hashVal : {key} -> word = {hashed}\n        val sameKey : {key} * {key} -> bool = {same} end\n"
         f"    open HashTable\n    type 'a hash_table = ({key}, 'a) HashTable.hash_table\n"
         f"    fun mkTable (hint, missing) = HashTable.mkTable ({hashed}, {same}) (hint, missing)\n"
         "    fun inDomain table key = isSome (find table key)\nend"
@@ -138,8 +139,27 @@ def names() -> frozenset[str]:
 
 
 @cache
+def signatures() -> frozenset[str]:
+    """Names of signatures that are declared for themselves; nets have colour sets of such names (`QUEUE`)."""
+    return frozenset(path.stem for path in (FOLDER / "signatures").glob("*.sml"))
+
+
+_MODULES = re.compile(r"\b(?:functor|include|signature|structure)\b")
+"""What a text has in it that can name a signature."""
+
+
+def _any_of(known: frozenset[str]) -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{'|'.join(sorted(known, key=len, reverse=True))})\b(?!')")
+
+
+@cache
 def _pattern() -> re.Pattern[str]:
-    return re.compile(rf"\b(?:{'|'.join(sorted(names(), key=len, reverse=True))})\b(?!')")
+    return _any_of(names())
+
+
+@cache
+def _signature_pattern() -> re.Pattern[str]:
+    return _any_of(signatures())
 
 
 @cache
@@ -161,13 +181,19 @@ def mentioned(text: str) -> tuple[str, ...]:
     It is asked for each declaration of a text, and the texts of a net are many.
     """
     more = [f"more/{name}" for name, pattern in _more().items() if pattern.search(text)]
-    return (*more, *dict.fromkeys(_pattern().findall(text)))
+    named = _pattern().findall(text)
+    if _MODULES.search(text):
+        named += _signature_pattern().findall(text)
+    return (*more, *dict.fromkeys(named))
 
 
 @cache
 def declaration(name: str) -> str:
     """The declaration of a name."""
-    return MADE[name] if name in MADE else (FOLDER / f"{name}.sml").read_text(encoding="ascii")
+    if name in MADE:
+        return MADE[name]
+    folder = FOLDER / "signatures" if name in signatures() else FOLDER
+    return (folder / f"{name}.sml").read_text(encoding="ascii")
 
 
 @cache

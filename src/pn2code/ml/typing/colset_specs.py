@@ -109,6 +109,7 @@ class Colsets:
         self._ctx.colsets.pop(spec.name, None)  # a new declaration counts at its own position
         self._ctx.colsets[spec.name] = colset
         scope = self._ctx.top
+        scope.structures.pop(spec.name, None)  # it is a structure itself
         if colset is None:
             scope.types[spec.name] = BrokenType()
             made = spec.ids if spec.kind in ("enum", "bool", "unit", "index") else ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -39,6 +39,8 @@ from pn2code.ml.typing.inference import (
     to_type,
 )
 
+BY_SOCKETS = "`simulate --sockets`"
+"""Stands in what is said of a function that a run with connections to other programs has."""
 MAX_DEPTH = 250
 """Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
 
@@ -161,7 +163,7 @@ class Context:
 
     def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
         """Says once per element that a function exists in CPN Tools but cannot run here."""
-        without = " without `--sockets`" if "`simulate --sockets`" in reason else ""
+        without = " without `--sockets`" if BY_SOCKETS in reason else ""
         self.warn_once(
             codes.UNSUPPORTED_BUILTIN,
             name,
@@ -189,6 +191,19 @@ class Context:
             yield self.scope
         finally:
             self.scope = outer
+
+    def means_colset(self, structure: str) -> bool:
+        """Whether a structure's name is that of a colour set here; a structure that was declared later hides it."""
+        return structure in self.colsets and not self.scope.declares_structure(structure)
+
+    @contextmanager
+    def with_colsets(self, colsets: Mapping[str, Colset | None]) -> Iterator[None]:
+        """While a functor's body is declared again, the colour sets are those that it saw."""
+        outer, self.colsets = self.colsets, dict(colsets)
+        try:
+            yield
+        finally:
+            self.colsets = outer
 
     @property
     def at_top(self) -> bool:

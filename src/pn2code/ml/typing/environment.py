@@ -294,6 +294,11 @@ class Scope:
                 found = found.structures.get(part)
         return found
 
+    def declares_structure(self, name: str) -> bool:
+        """Whether a structure of the net has that name (`A` of `A.B`); it hides others, and colour sets."""
+        head, _, _ = name.partition(".")
+        return any(head in s.structures for s in self._chain() if s.parent is not None)
+
     def signature(self, name: str) -> SignatureEntry | BrokenStructure | None:
         """A signature by its name."""
         return next((s.signatures[name] for s in self._chain() if name in s.signatures), None)
@@ -378,10 +383,11 @@ class SignatureEntry:
 
 @frozen(eq=False)
 class FunctorEntry:
-    """A functor, and the names in force where it was declared."""
+    """A functor, and the names and colour sets in force where it was declared."""
 
     binding: FunctorBinding
     scope: Scope
+    colsets: Mapping[str, Colset | None]
 
 
 def split_name(name: str) -> list[str]:

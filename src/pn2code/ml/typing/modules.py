@@ -111,7 +111,7 @@ class Modules:
                 self.structure(b.body, [])
             broken = self._ctx.errors > before
             self._ctx.scope.functors[b.name] = (
-                BrokenStructure() if broken else FunctorEntry(b, scope)
+                BrokenStructure() if broken else FunctorEntry(b, scope, dict(self._ctx.colsets))
             )
 
     def open(self, dec: s.OpenDec) -> None:
@@ -131,9 +131,8 @@ class Modules:
 
     def named(self, name: str, span: Span) -> Found:
         """A structure by its name."""
-        found = self._ctx.scope.structure(name)
-        if found is None and name in self._ctx.colsets:
-            found = self._colset(name)
+        means_colset = self._ctx.means_colset(name)
+        found = self._colset(name) if means_colset else self._ctx.scope.structure(name)
         if found is None:
             self._ctx.error(codes.UNBOUND, f"there is no structure `{name}`", span)
             return BrokenStructure()
@@ -189,7 +188,7 @@ class Modules:
         matched = self._match(
             argument, functor.binding.signature, False, e.argument.span, functor.scope
         )
-        with self._inside(functor.scope):
+        with self._inside(functor.scope), self._ctx.with_colsets(functor.colsets):
             self._enter_argument(functor.binding, matched)
             return self.structure(functor.binding.body, builds)
 

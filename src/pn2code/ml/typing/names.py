@@ -75,7 +75,7 @@ class Names:
         *path, last = split_name(name)
         if path:
             structure = ".".join(path)
-            if self._ctx.scope.structure(structure) is None or structure in self._ctx.colsets:
+            if self._ctx.means_colset(structure) or self._ctx.scope.structure(structure) is None:
                 return self._colset_member(structure, last)
         return self._ctx.scope.value(name)
 
@@ -264,7 +264,8 @@ class Names:
         *path, last = split_name(name)
         if path:
             structure = ".".join(path)
-            colset = self._ctx.colsets.get(structure)
+            means_colset = self._ctx.means_colset(structure)
+            colset = self._ctx.colsets[structure] if means_colset else None
             if colset is not None:
                 hint = suggestion(last, members_of(colset))
                 self._ctx.error(

@@ -69,16 +69,19 @@ class Connections:
         self._wait = wait
         self._interrupted = interrupted
         self._open: dict[str, socket.socket] = {}
-        self._is_in_code = False
+        self._is_once = False
 
     @contextmanager
-    def in_code(self) -> Iterator[None]:
-        """While a code segment runs, which is once for each occurrence; nothing else may use connections."""
-        self._is_in_code = True
+    def computed_once(self) -> Iterator[None]:
+        """While what is computed once for each occurrence runs, a code segment or a function of a monitor.
+
+        Nothing else may use connections.
+        """
+        self._is_once = True
         try:
             yield
         finally:
-            self._is_in_code = False
+            self._is_once = False
 
     # --- what a net does ---------------------------------------------------------------------------
 
@@ -181,9 +184,9 @@ class Connections:
         return self._open[name]
 
     def _asked(self) -> None:
-        if not self._is_in_code:
+        if not self._is_once:
             raise MlUnavailable(
-                "connections are for code segments: what else a net computes is computed more than once"
+                "connections are for code segments and monitors: what else a net computes is computed more than once"
             )
 
     def _fresh(self, name: str) -> None:

@@ -356,11 +356,11 @@ class Game:
         return dict(zip(outputs, result, strict=True)) if outputs else {}
 
     def _acted(self, action: Exp, binding: Binding) -> Any:
-        """What a code segment gives; it alone may talk to other programs."""
+        """What a code segment gives; it may talk to other programs, as monitors do, and nothing else."""
         connections = self.evaluator.files.connections
         if connections is None:
             return self.evaluator.value(action, binding)
-        with connections.in_code():
+        with connections.computed_once():
             return self.evaluator.value(action, binding)
 
     def delay(self, t: FlatTransition, binding: Binding) -> Any:

@@ -72,7 +72,12 @@ INFINITE = "infinite"
 _LIMITS = (*REACHED, INFINITE)
 """Ends of an exploration after which it is asked whether there would have been another one."""
 SEARCH_PART = 0.85
-"""Of the time until a deadline, what an explorer may search; the rest is for telling what it has seen."""
+"""Of the time until a deadline, what an explorer may search; the rest is for telling what it has seen.
+
+It ends the search earlier where that will take longer, as far as it can tell.
+"""
+LATE_PART = 0.95
+"""The same, until it breaks off what it works out; soon after, and before the deadline, it says what it knows."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 _LOOK_S = 0.05
@@ -378,9 +383,21 @@ def nothing(net: FlatNet, limits: Limits, why: str = "interrupted") -> dict[str,
     }
 
 
+def _counted_only(net: FlatNet, last: Mapping[str, Any]) -> dict[str, Any]:
+    """What an explorer has said of itself last that had to be ended: how much it has seen, and nothing of what."""
+    return {
+        **nothing(net, Limits(), "seconds"),
+        "nodes": last.get("states", 0),
+        "arcs": last.get("arcs", 0),
+        "depth": last.get("depth", 0),
+        "seconds": last.get("seconds", 0.0),
+        "told": False,
+    }
+
+
 def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOptions) -> list[str]:
     left = limits.deadline.left
-    late = None if left is None else max(left, LEAST_SECONDS)
+    late = None if left is None else max(left * LATE_PART, LEAST_SECONDS)
     # What was seen has to be told within the deadline, too.
     seconds = None if left is None else left * SEARCH_PART
     given: list[tuple[str, object]] = [
@@ -492,9 +509,12 @@ def _run(
     assert process.stdout is not None and process.stderr is not None
     said: list[str] = []
     report: list[bytes] = []
+    last: dict[str, Any] = {}
     reader = threading.Thread(target=_read, args=(process.stdout, report), daemon=True)
     listeners = (
-        threading.Thread(target=_listen, args=(process.stderr, options, said, search), daemon=True),
+        threading.Thread(
+            target=_listen, args=(process.stderr, options, said, last, search), daemon=True
+        ),
         reader,
     )
     for listener in listeners:
@@ -540,15 +560,16 @@ def _run(
         if told and process.returncode == -signal.SIGINT:  # before it could listen
             return nothing(net, Limits())
         if is_long:
-            return nothing(net, Limits(), "processor")
+            return {**_counted_only(net, last), "why": "processor"}
         if is_late:
             d.warning(
                 TIME_OVER,
-                "the explorer did not end when its time was up, and was stopped; what it had found is lost",
+                "the explorer did not end when its time was up, and was stopped; of what it had found only the "
+                "number of markings is known",
                 Origin(net.file),
                 hint="an inscription may compute for very long, or for ever; `--max-states` ends it earlier",
             )
-            return nothing(net, Limits(), "seconds")
+            return _counted_only(net, last)
         _bad_end(net, process.returncode, said, d)
         return None
     if found["why"] == "seconds":  # it may have ended in the middle of a trace
@@ -570,8 +591,13 @@ def _read(stream: IO[bytes], report: list[bytes]) -> None:
 
 
 def _listen(
-    stream: IO[bytes], options: ExploreOptions, said: list[str], search: Meanwhile | None
+    stream: IO[bytes],
+    options: ExploreOptions,
+    said: list[str],
+    last: dict[str, Any],
+    search: Meanwhile | None,
 ) -> None:
+    """Hears what an explorer says: progress, of which `last` keeps the last line, and errors, which `said` keeps."""
     with stream:
         for line in stream:
             text = line.decode("utf-8", "replace").rstrip()
@@ -580,6 +606,7 @@ def _listen(
             except ValueError:
                 progress = None
             if isinstance(progress, dict):
+                last.update(progress)
                 options.progress(progress)
                 if search is not None:
                     search.note(int(progress.get("states", 0)))

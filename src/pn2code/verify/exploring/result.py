@@ -202,6 +202,7 @@ class Exploration:
         covering: of "infinite": the run that shows that places, or the time alone, grow without bound.
         known: of "counted": what is known of all markings nevertheless.
         orders: what CPN Tools may raise in another order; None: nothing, or it was not looked at.
+        told: whether the explorer has told what it has seen; else how many markings that were is all that is known.
     """
 
     complete: bool
@@ -232,6 +233,7 @@ class Exploration:
     covering: Covering | None = None
     known: Known | None = None
     orders: OtherOrders | None = None
+    told: bool = True
 
     @property
     def is_reduced(self) -> bool:
@@ -245,8 +247,8 @@ class Exploration:
 
     @property
     def knows_dead_transitions(self) -> bool:
-        """Whether a transition without arcs never occurs."""
-        return "partial-order" not in self.reductions
+        """Whether a transition without arcs never occurs in what was seen."""
+        return self.told and "partial-order" not in self.reductions
 
     def growing(self) -> tuple[int, int] | None:
         """Of a space not seen to its end: the place that differs in most of its markings, and in how many; or None."""
@@ -289,6 +291,7 @@ class Exploration:
             bindings=_bindings(found.get("bindings")),
             arena=found.get("arena"),
             different=tuple(found.get("different") or ()),
+            told=found.get("told", True),
         )
 
     @property
@@ -389,7 +392,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "arcs": None if found.is_reduced else found.arcs,
         "scc_nodes": graph.scc_nodes if graph else None,
         "scc_arcs": graph.scc_arcs if graph else None,
-        "dead_markings": found.dead_count,
+        "dead_markings": found.dead_count if found.told else None,
         "dead_marking_nodes": list(found.dead),
         "home_markings": graph.home_count if graph else None,
         "home_marking_nodes": list(graph.home) if graph else None,

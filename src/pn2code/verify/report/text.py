@@ -195,7 +195,7 @@ def _liveness(net: FlatNet, found: Exploration) -> str:
     everything = found.dead_count == found.nodes and is_whole
     dead = "All" if everything else _nodes(found.dead, found.dead_count)
     if not found.dead_count and not is_whole:
-        dead = "None was seen"
+        dead = "None was seen" if found.told else "Not known"
     lines = [*_section("Liveness Properties"), "", "  Dead Markings", f"     {dead}"]
     if found.knows_dead_transitions:
         title = (

@@ -284,7 +284,10 @@ def _markings(found: Exploration) -> list[tuple[str, str]]:
         rows.append(
             ("Home markings", "all" if every else _listed(found.graph.home_count, found.graph.home))
         )
-    rows.append(("Dead markings", _listed(found.dead_count, found.dead)))
+    dead = _listed(found.dead_count, found.dead)
+    if not found.dead_count and not found.seen.markings:
+        dead = "none was seen" if found.told else "not known"
+    rows.append(("Dead markings", dead))
     return rows
 
 
@@ -313,7 +316,7 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
         rows.append(
             {
                 "name": names.transition(index),
-                "arcs": "" if found.is_reduced else f"{arcs:,}",
+                "arcs": "" if found.is_reduced or not found.told else f"{arcs:,}",
                 "kind": kind,
                 "fairness": fairness[index]
                 if fairness
