@@ -134,9 +134,7 @@ class Elaborator:
         names = Names(self._ctx)
         self._expressions = Expressions(self._ctx, annotations, patterns, names)
         self._instances = InstanceFunctions(self._ctx)
-        self._given = GivenValues(
-            self._ctx, self._expressions, values or {}, weakly(self._parse)
-        )
+        self._given = GivenValues(self._ctx, self._expressions, values or {}, weakly(self._parse))
         self._declare = Declarations(self._ctx, annotations, patterns, self._expressions, names)
         self._fixities: Fixities = dict(INFIX)
         self._made: list[core.Dec] = []
@@ -155,9 +153,7 @@ class Elaborator:
         self._repeats = Repeats()
         self._library: set[str] = set()
         self._from_library: set[str] = set()
-        self._colsets = Colsets(
-            self._ctx, self._declare, weakly(self._plain), weakly(self._fold)
-        )
+        self._colsets = Colsets(self._ctx, self._declare, weakly(self._plain), weakly(self._fold))
 
     # --- declarations
 

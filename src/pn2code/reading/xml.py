@@ -150,7 +150,9 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
     try:
         return builder.build(data)
     finally:
-        del builder.parser  # it calls the builder: nothing would free the two, and all elements with them
+        del (
+            builder.parser
+        )  # it calls the builder: nothing would free the two, and all elements with them
 
 
 def _qualified(name: str) -> str:

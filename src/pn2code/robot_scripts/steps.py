@@ -199,7 +199,8 @@ class StepTranslator:
 
     def known(self, conditions: Iterable[t.Expression] = ()) -> Known:
         """What is known of numbers where some conditions hold."""
-        found = Known(self.names.constant_values, lambda e: may_be_nan(e, self.names), {})
+        names = self.names  # who knows it may be kept by this object
+        found = Known(names.constant_values, lambda e: may_be_nan(e, names), {})
         for c in conditions:
             found = found.with_condition(c)
         return found
