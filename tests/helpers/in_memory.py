@@ -7,6 +7,9 @@ and a run takes a seventh less processor time.
 It is left to the disk where there is no such file system, little room in it or in memory, or programs in it cannot be
 run; and where somebody says where temporary files lie (`--basetemp`, TMPDIR, PYTEST_DEBUG_TEMPROOT). What a run leaves
 is removed at its end, unless tests have failed, then at the beginning of the next one.
+
+Where nothing is kept for a next run (`PN2CODE_TEST_FORGETS=1`, as in `.ci/run`), what `./dev test` would keep on the
+disk lies there, too: programs of nets, in folders of hundreds of files that are made and removed, and objects.
 """
 
 from __future__ import annotations
@@ -20,6 +23,8 @@ from pathlib import Path
 
 import pytest
 
+from helpers.remembering_cc import KEPT
+
 SHARED_MEMORY = Path("/dev/shm")
 PREFIX = "pn-"
 """Then the process comes."""
@@ -28,6 +33,10 @@ ROOM = 6 << 30
 MEMORY = 10 << 30
 """Bytes of memory that have to be available: they hold these files, and processes work in the rest."""
 SAID = ("TMPDIR", "PYTEST_DEBUG_TEMPROOT")
+FORGETS = "PN2CODE_TEST_FORGETS"
+"""The variable that says that there is no next run."""
+_KEPT = {"XDG_CACHE_HOME": "cache", KEPT: "objects"}
+"""Variables for what is kept from one run to the next -> the folder in memory that takes its place."""
 _MADE = pytest.StashKey[Path]()
 
 
@@ -41,6 +50,16 @@ def begin(config: pytest.Config) -> None:
         config.stash[_MADE] = made
         os.environ.update(dict.fromkeys(SAID, str(made)))
         tempfile.tempdir = None  # it has been looked up
+        if os.environ.get(FORGETS):
+            os.environ.update(instead(made))
+
+
+def instead(made: Path) -> dict[str, str]:
+    """Variables that say that what is kept otherwise lies in folders there, which are made."""
+    folders = {name: made / folder for name, folder in _KEPT.items()}
+    for folder in folders.values():
+        folder.mkdir(mode=0o700)
+    return {name: str(folder) for name, folder in folders.items()}
 
 
 def end(config: pytest.Config, status: int) -> None:

@@ -118,14 +118,13 @@ class _Line:
     def whole(self) -> str:
         """The text with all deeper lines, their relative indentation kept."""
         lines = [self.text]
-
-        def add(children: list[_Line]) -> None:
-            for c in children:
-                lines.append(" " * max(0, c.indent - self.indent) + c.text)
-                add(c.children)
-
-        add(self.children)
+        self._add(self.children, lines)
         return "\n".join(lines)
+
+    def _add(self, children: list[_Line], lines: list[str]) -> None:
+        for c in children:
+            lines.append(" " * max(0, c.indent - self.indent) + c.text)
+            self._add(c.children, lines)
 
 
 def _lines(text: str) -> list[_Line]:

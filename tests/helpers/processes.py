@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import atexit
 import ctypes
+import gc
 import os
 import select
 import signal
@@ -49,6 +50,7 @@ class Child:
     def _become(body: Callable[[], int], stdout: int | None, stderr: int | None) -> None:
         code = 70
         atexit._clear()  # what the tests' own process has to do at its end
+        gc.freeze()  # looking through what the tests have made would copy all of it
         try:
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_DFL)

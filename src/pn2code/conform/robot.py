@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from pn2code.base.how_far import HowFar, Say, silent
+from pn2code.base.weakly import weakly
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
@@ -78,7 +79,7 @@ class _Product:
         self._names = {t.name: t for t in self._net.transitions}
         self._scheme = Scheme(partition, game)
         self._clock = Clock(partition.net)
-        self._interpreter = Script(program, self._files, self._heard)
+        self._interpreter = Script(program, self._files, weakly(self._heard))
         self._marking = self._start = game.marking
         self._done: list[commands.Command] = []
         self._owed = 0.0

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pn2code.base.frozen import record
+from pn2code.base.weakly import weakly
 from pn2code.diagnostics import Diagnostics, Origin, Severity, SourceText
 from pn2code.ml import codes, library
 from pn2code.ml.core import terms as core
@@ -133,7 +134,7 @@ class Elaborator:
         names = Names(self._ctx)
         self._expressions = Expressions(self._ctx, annotations, patterns, names)
         self._instances = InstanceFunctions(self._ctx)
-        self._given = GivenValues(self._ctx, self._expressions, values or {}, self._parse)
+        self._given = GivenValues(self._ctx, self._expressions, values or {}, weakly(self._parse))
         self._declare = Declarations(self._ctx, annotations, patterns, self._expressions, names)
         self._fixities: Fixities = dict(INFIX)
         self._made: list[core.Dec] = []
@@ -147,12 +148,12 @@ class Elaborator:
             self._expressions,
             patterns,
             self._variables.scope,
-            partial(self._fold, fixed=True),
+            partial(weakly(self._fold), fixed=True),
         )
         self._repeats = Repeats()
         self._library: set[str] = set()
         self._from_library: set[str] = set()
-        self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
+        self._colsets = Colsets(self._ctx, self._declare, weakly(self._plain), weakly(self._fold))
 
     # --- declarations
 

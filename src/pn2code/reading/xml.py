@@ -146,7 +146,13 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
     if not data.strip():
         d.error(XML_TRUNCATED, "the file is empty", Origin(file), hint="save the net again")
         return None
-    return _Builder(file, d).build(data)
+    builder = _Builder(file, d)
+    try:
+        return builder.build(data)
+    finally:
+        del (
+            builder.parser
+        )  # it calls the builder: nothing would free the two, and all elements with them
 
 
 def _qualified(name: str) -> str:

@@ -77,19 +77,20 @@ def unassigned(
 
 def _callees_first(program: t.Program, bodies: Mapping[str, flow.Body]) -> list[str]:
     done: list[str] = []
-
-    def visit(name: str) -> None:  # no recursion among procedures: the checker has seen to that
-        if name in done:
-            return
-        for i in bodies[name].instructions:
-            if isinstance(i, flow.CallProcedure):
-                visit(i.name)
-        done.append(name)
-
     for procedure in program.procedures:
-        visit(procedure.name)
-    visit("")
+        _after_callees(procedure.name, bodies, done)
+    _after_callees("", bodies, done)
     return done
+
+
+def _after_callees(name: str, bodies: Mapping[str, flow.Body], done: list[str]) -> None:
+    """Appends a procedure behind those that it calls: none calls itself, the checker has seen to that."""
+    if name in done:
+        return
+    for i in bodies[name].instructions:
+        if isinstance(i, flow.CallProcedure):
+            _after_callees(i.name, bodies, done)
+    done.append(name)
 
 
 def _before(
@@ -202,16 +203,13 @@ def names_in(e: t.Expression) -> Iterator[t.Name]:
 def files_in(e: t.Expression) -> tuple[str, ...]:
     """The files whose message an expression asks for, each once, in order."""
     out: dict[str, None] = {}
-
-    def visit(x: t.Expression) -> None:
-        match x:
+    todo = [e]
+    while todo:
+        match x := todo.pop():
             case t.CallExpression("filled", (t.Name(name),)):
                 out.setdefault(name)
             case _:
-                for c in children(x):
-                    visit(c)
-
-    visit(e)
+                todo += reversed(children(x))
     return tuple(out)
 
 

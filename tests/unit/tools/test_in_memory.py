@@ -17,6 +17,15 @@ def test_a_folder_of_this_process(tmp_path: Path) -> None:
     assert made.stat().st_mode & 0o777 == 0o711  # nobody else looks into it
 
 
+def test_what_no_next_run_asks_for(tmp_path: Path) -> None:
+    told = in_memory.instead(tmp_path)
+    assert told == {
+        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "PN2CODE_TEST_OBJECTS": str(tmp_path / "objects"),
+    }
+    assert [Path(folder).stat().st_mode & 0o777 for folder in told.values()] == [0o700, 0o700]
+
+
 def test_where_there_is_little_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert in_memory.room(tmp_path, 1 << 62, 0) is None
     assert in_memory.room(tmp_path, 0, 1 << 62) is None

@@ -15,7 +15,7 @@ from pn2code.lowering.expressions.effects import (
     raises_only_overflow,
 )
 from pn2code.lowering.expressions.functions import Program
-from pn2code.lowering.expressions.matching import Matcher, TypeSource
+from pn2code.lowering.expressions.matching import TypeSource
 from pn2code.lowering.expressions.types import substitute
 from pn2code.lowering.expressions.values import (
     BuiltinFunction,
@@ -49,7 +49,6 @@ class Block(TypeSource):
         self._locals = 0
         self._inlined: list[int] = []
         self._inlines = 0
-        self._matcher = Matcher(self)
         self.has_self_call = False
 
     # --- small services ------------------------------------------------------------------------

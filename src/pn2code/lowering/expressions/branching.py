@@ -12,7 +12,13 @@ from pn2code.diagnostics import Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, Local, Rep
 from pn2code.lowering.expressions.block import UNIT_VALUE, Block
-from pn2code.lowering.expressions.matching import Match, conjunction, is_irrefutable, negation
+from pn2code.lowering.expressions.matching import (
+    Match,
+    Matcher,
+    conjunction,
+    is_irrefutable,
+    negation,
+)
 from pn2code.lowering.expressions.parameters import split_parameters
 from pn2code.lowering.expressions.shapes import covers, handled_name, is_simple, nodes, size
 from pn2code.lowering.expressions.types import has_function as type_has_function
@@ -67,7 +73,7 @@ class Branching(Block):
             self.discard(value)
         elif not isinstance(pattern, core.PVar):
             value = self.store_in_locals(value, "value")
-        return self._matcher.match(pattern, value)
+        return Matcher(self).match(pattern, value)
 
     def bind_pattern(
         self, pattern: core.Pat, value: Val, env: Env | None = None, exception: str = "Bind"
@@ -77,7 +83,7 @@ class Branching(Block):
 
     def match(self, pattern: core.Pat, value: Val) -> Match:
         """Match a value whose C parts are atomic."""
-        return self._matcher.match(pattern, value)
+        return Matcher(self).match(pattern, value)
 
     def bind_all(self, match: Match, env: Env, exception: str = "") -> Env:
         """Bind the variables of a match; where it may fail, raise `exception` and bind harmless values."""
@@ -246,7 +252,7 @@ class Branching(Block):
             outcomes.give_up()
             return
         rule = rules[index]
-        match = self._matcher.match(rule.pattern, value)
+        match = Matcher(self).match(rule.pattern, value)
         condition = conjunction(match.conditions)
         # The data type's constructors are all there: the last of them needs no test.
         is_last = index + 1 == len(rules) and covers(rules)
@@ -332,7 +338,7 @@ class Branching(Block):
         if not rules:
             return
         rule, rest = rules[0], rules[1:]
-        match = self._matcher.match(rule.pattern, raised)
+        match = Matcher(self).match(rule.pattern, raised)
         condition = conjunction(match.conditions)
         with self.block() as then:
             self.emit(ir.ClearError())

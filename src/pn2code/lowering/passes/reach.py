@@ -17,7 +17,7 @@ class Reach:
     def __init__(self, net: ir.NetIR) -> None:
         self._functions = net.functions
         self._calls = {f.key: called(f.body) for f in net.functions}
-        self._reaching: dict[Callable[[object], bool], set[str]] = {}
+        self._reaching: dict[object, set[str]] = {}
         self._references = {g.name for g in net.globals if g.is_reference}
         self._looked_at: dict[int, tuple[object, tuple[object, ...]]] = {}
         """by id, with what has it"""
@@ -73,7 +73,8 @@ class Reach:
         return frozenset(self._functions_reaching(self._is_impure))
 
     def _functions_reaching(self, what: Callable[[object], bool]) -> set[str]:
-        if what not in self._reaching:
+        kind = getattr(what, "__func__", what)  # not what is kept here, if it is its own method
+        if kind not in self._reaching:
             found = {f.key for f in self._functions if any(map(what, ir_nodes(f.body)))}
             more = found
             while more:
@@ -83,8 +84,8 @@ class Reach:
                     if key not in found and not found.isdisjoint(calls)
                 }
                 found |= more
-            self._reaching[what] = found
-        return self._reaching[what]
+            self._reaching[kind] = found
+        return self._reaching[kind]
 
     def _is_impure(self, node: object) -> bool:
         is_step = isinstance(node, ir.Op) and node.name == "Time.step"

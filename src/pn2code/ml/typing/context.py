@@ -140,7 +140,7 @@ class Context:
 
     def __post_init__(self) -> None:
         """Starts with the library."""
-        self.unifier = Unifier(lambda name: self.equality.get(name, True))
+        self.unifier = Unifier(self.equality)
         self.top = Scope(library_scope())
         self.scope = self.top
         self.datatypes = dict(DATATYPES)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
+from pn2code.base.weakly import weakly
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -69,8 +70,9 @@ class Declarations:
         self._annotations = annotations
         self._patterns = patterns
         self._expressions = expressions
-        self._modules = Modules(ctx, annotations, names, self.declare)
-        expressions.declare = self.declare
+        declare = weakly(self.declare)
+        self._modules = Modules(ctx, annotations, names, declare)
+        expressions.declare = declare
 
     def declare(self, dec: s.Dec) -> Build:
         """Enters a declaration."""

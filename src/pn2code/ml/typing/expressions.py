@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from pn2code.base.weakly import weakly
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -71,7 +72,7 @@ class Expressions:
         self._patterns = patterns
         self._names = names
         self.declare: DeclareFunction
-        names.own = self._own
+        names.own = weakly(self._own)
 
     # --- checking against a type
 
@@ -338,16 +339,10 @@ class Expressions:
             pair = core.RecordExp((("1", left), ("2", right)), both, span)
             return core.Apply(operator, pair, full, span)
 
-        def balanced(low: int, high: int) -> core.Exp:
-            if high - low == 1:
-                return drafts[low].build()
-            middle = (low + high) // 2
-            span = terms[low].span.to(terms[high - 1].span)
-            return join(balanced(low, middle), balanced(middle, high), span)
-
         def build() -> core.Exp:
             if len(terms) > _BALANCE_FROM:
-                return balanced(0, len(terms))
+                operands = [(x.span, draft) for x, draft in zip(terms, drafts, strict=True)]
+                return _balanced(operands, join)
             out = drafts[0].build()
             for i, draft in enumerate(drafts[1:]):
                 out = join(out, draft.build(), terms[0].span.to(terms[i + 1].span))
@@ -609,6 +604,17 @@ def _rule(
     pattern: Callable[[], core.Pat], body: Draft, span: Span, derefs: Sequence[Deref]
 ) -> BuiltRule:
     return BuiltRule(core.Rule(pattern(), body.build(), span), tuple(derefs))
+
+
+def _balanced(
+    operands: Sequence[tuple[Span, Draft]], join: Callable[[core.Exp, core.Exp, Span], core.Exp]
+) -> core.Exp:
+    """A tree of operands; `join` makes one of two neighbours."""
+    if len(operands) == 1:
+        return operands[0][1].build()
+    middle = len(operands) // 2
+    span = operands[0][0].to(operands[-1][0])
+    return join(_balanced(operands[:middle], join), _balanced(operands[middle:], join), span)
 
 
 def _pair(left: Draft, right: Draft, span: Span) -> Draft:

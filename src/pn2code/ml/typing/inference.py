@@ -10,7 +10,7 @@ unifies with m; nothing else is known of m at the end of the declaration, so it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
 from pn2code.base.frozen import frozen, record
@@ -153,13 +153,16 @@ class TypeTooLargeError(Exception):
 class Unifier:
     """Unification with a trail, so that an attempt can be taken back.
 
+    Args:
+        equality: whether a datatype (of equality arguments) has equality; those that are not in it have.
+
     Attributes:
         see_through: whether abstract types count as their implementations, while a structure is matched.
         work: parts of types looked at since the text began.
     """
 
-    def __init__(self, equality_of: Callable[[str], bool]) -> None:
-        self._equality_of = equality_of
+    def __init__(self, equality: Mapping[str, bool]) -> None:
+        self._equality = equality
         self._trail: list[tuple[Meta, int, bool, tuple[str, ...], dict[str, Ty] | None, Ty | None]]
         self._trail = []
         self.level = 0
@@ -374,7 +377,7 @@ class Unifier:
         elif isinstance(t, ICon):
             if t.name == "ref":
                 return
-            if t.name in NO_EQUALITY or not self._equality_of(t.name):
+            if t.name in NO_EQUALITY or not self._equality.get(t.name, True):
                 raise UnifyError("equality", t, t)
             for arg in t.args:
                 self.require_equality(arg)
