@@ -1,14 +1,20 @@
 """MISRA C:2012 in the deployed supervisor of the riveting cell: required rules are broken only as docs/misra.md says.
 
     python -m tools.misra [FOLDER]         # or `make misra`
+    python -m tools.misra --record         # what was found is written down, where that is not yet done
 
 cppcheck's addon (the wheel `cppcheck-py`; `tools/misra_addon.py`) looks at the generated `net.c` and `cell_config.c`,
 the supervisor's own sources and the channels. The rows of docs/misra.md name a rule, a file and a reason; a finding
 without a row and a row without a finding are both mistakes. Findings of advisory rules are counted, not listed.
+
+Looking takes a quarter of a minute, so what was found is committed (`RECORD`), with a digest of all that it depends on:
+where one byte of that is another, it is looked at anew. `./dev golden` writes it.
 """
 
 from __future__ import annotations
 
+import hashlib
+import importlib.metadata
 import importlib.util
 import json
 import os
@@ -20,6 +26,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "misra.md"
+COMMITTED = ROOT / "generated" / "riveting"
+RECORD = ROOT / "tests" / "golden" / "misra.json"
 ADDON = Path(__file__).with_name("misra_addon.py")
 """It also compares files with each other (ctu), which cppcheck asks of its own addon without being told."""
 SOURCES = (
@@ -62,7 +70,45 @@ _FINDING = re.compile(r"^(\S+?):(\d+):(\d+): misra-c2012-(\d+\.\d+)$")
 _ROW = re.compile(r"^\| (\d+\.\d+) \| `([^`]+)` \| (\S.*) \|$", re.MULTILINE)
 
 
-def findings(folder: Path) -> tuple[Counter[tuple[str, str]], Counter[str]]:
+Findings = tuple[Counter[tuple[str, str]], Counter[str]]
+
+
+def digest(folder: Path) -> str:
+    """Of all that findings depend on: sources, how they are compiled, how it is looked, and who looks."""
+    files = sorted(path for path in folder.rglob("*") if path.suffix in (".c", ".h"))
+    named = [(path.relative_to(folder).as_posix(), path) for path in files]
+    named += [(path.name, path) for path in (folder / "Makefile", Path(__file__), ADDON)]
+    found = hashlib.sha256(importlib.metadata.version("cppcheck-py").encode())
+    for name, path in named:
+        data = path.read_bytes()
+        found.update(f"\0{name}\0{len(data)}\0".encode())
+        found.update(data)
+    return found.hexdigest()
+
+
+def recorded(folder: Path, record: Path = RECORD) -> Findings | None:
+    """What was found when all was as it is now, None: something has changed since, or nothing is written down."""
+    if not record.exists():
+        return None
+    kept = json.loads(record.read_text(encoding="utf-8"))
+    if kept["of"] != digest(folder):
+        return None
+    required = Counter({(rule, file): count for rule, file, count in kept["required"]})
+    return required, Counter(kept["advisory"])
+
+
+def write_down(folder: Path, found: Findings, record: Path = RECORD) -> None:
+    """For `recorded`."""
+    required, advisory = found
+    kept = {
+        "of": digest(folder),
+        "required": [[rule, file, count] for (rule, file), count in sorted(required.items())],
+        "advisory": dict(sorted(advisory.items())),
+    }
+    record.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+def findings(folder: Path) -> Findings:
     """Of required rules by rule and file, of advisory ones by rule.
 
     Raises:
@@ -128,7 +174,11 @@ def mistakes(required: Counter[tuple[str, str]], page: str) -> list[str]:
 
 def main() -> int:
     """0: nothing is open."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "generated" / "riveting"
+    if sys.argv[1:] == ["--record"]:
+        if recorded(COMMITTED) is None:
+            write_down(COMMITTED, findings(COMMITTED))
+        return 0
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else COMMITTED
     required, advisory = findings(folder)
     for (rule, file), count in sorted(required.items()):
         print(f"{rule:>6} {file:24} {count:4}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import shutil
 from collections import Counter
 from pathlib import Path
@@ -10,28 +9,39 @@ from pathlib import Path
 import pytest
 from tools import misra
 
-from helpers.remembered import remembered
+from helpers.thorough import THOROUGH
 
 
-def test_what_is_committed(root: Path) -> None:
-    folder = root / "generated" / "riveting"
-    files = sorted(path for path in folder.rglob("*") if path.suffix in (".c", ".h"))
-    own = (folder / "Makefile", Path(misra.__file__), misra.ADDON)
-    assert {folder / name for name in misra.SOURCES} <= {*files}
-
-    def look() -> list[list[tuple[str, int]]]:
-        required, advisory = misra.findings(folder)
-        return [[("/".join(of), n) for of, n in required.items()], [*advisory.items()]]
-
-    version = importlib.metadata.version("cppcheck-py")
-    found = remembered("misra", [*own, *files, version], look)
-    required = Counter({tuple(of.split("/", 1)): n for of, n in found[0]})
-    advisory = Counter(dict(found[1]))
-
+def test_what_is_committed() -> None:
+    """As it was found, where nothing has changed since; `make thorough` looks again."""
+    assert all((misra.COMMITTED / name).is_file() for name in misra.SOURCES)
+    kept = misra.recorded(misra.COMMITTED)
+    if kept is None or THOROUGH:
+        found = misra.findings(misra.COMMITTED)
+        assert kept in (None, found)
+        kept = found
+    required, advisory = kept
     assert (
         advisory["2.5"] > 0
     )  # which takes a comparison of files: of a macro that none of them uses
     assert misra.mistakes(required, misra.PAGE.read_text(encoding="utf-8")) == []
+
+
+def test_what_was_found_counts_only_for_what_was_looked_at(root: Path, tmp_path: Path) -> None:
+    folder, record = tmp_path / "riveting", tmp_path / "misra.json"
+    shutil.copytree(root / "generated" / "riveting", folder)
+    found = Counter({("17.1", "a.c"): 2, ("8.2", "b.c"): 1}), Counter({"2.5": 3})
+    assert misra.recorded(folder, record) is None
+    misra.write_down(folder, found, record)
+    assert misra.recorded(folder, record) == found
+    for name in ("net.c", "net.h", "Makefile", "runtime/src/channel/pn_channel.c"):
+        before = (folder / name).read_text()
+        (folder / name).write_text(f"{before} ")
+        assert misra.recorded(folder, record) is None, name
+        (folder / name).write_text(before)
+    assert misra.recorded(folder, record) == found
+    (folder / "more.h").write_text("")
+    assert misra.recorded(folder, record) is None
 
 
 def test_rows_and_findings_have_to_fit() -> None:

@@ -132,9 +132,6 @@ def prune(store: Path, most: int = MOST_BYTES) -> None:
     room = most
     for used, size, path in sorted(files, key=lambda file: file[0], reverse=True):
         room -= size
-        is_left = (
-            path.suffix not in (".o", ".files", ".answer")
-            and time.time() - used > _SECONDS_LONG_AGO
-        )
+        is_left = path.suffix not in (".o", ".files") and time.time() - used > _SECONDS_LONG_AGO
         if room < 0 or is_left:
             path.unlink(missing_ok=True)
