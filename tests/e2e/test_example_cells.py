@@ -105,9 +105,9 @@ EXAMPLES = {
     ),
 }  # fmt: skip
 
-AGAIN = ("sorting", "palletiser", "handover")
+AGAIN = ("sorting", "handover")
 """Generated twice, and their runs forged, in each run of the tests; all of them are in `make thorough`."""
-RUN = (*AGAIN, "tending", "timed")
+RUN = (*AGAIN, "timed")
 """Run in each run of the tests; all of them are in `make thorough`."""
 FEWER = {"parts": "1", "orders": "1"}
 """The timed cell, with a thirtieth of the states as it runs."""
