@@ -343,7 +343,7 @@ def test_a_reduced_net_that_the_engine_cannot_read_is_not_asked(tmp_path: Path) 
         f"<all-paths><finally><negation>{one_in_a}</negation></finally></all-paths>",
         f"<exists-path><globally>{one_in_a}</globally></exists-path>",
     )
-    lines = said(tmp_path, "CTLCardinality", "--max-seconds", "6")
+    lines = said(tmp_path, "CTLCardinality", "--max-seconds", "2")
     assert set(values(lines)) == {"a", "b"}
     assert Tables((1 << 30,), ({0: 1},), ({},), {}, {}).fits()
     assert not Tables((0,), ({0: 1},), ({0: (1 << 30) + 1},), {}, {}).fits()

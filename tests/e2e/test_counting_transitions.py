@@ -9,6 +9,7 @@ import pytest
 from helpers.explored import Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_tables import random_tables, restless_tables
+from helpers.thorough import amount
 from pn2code.contest.tables import Tables
 from pn2code.lowering.passes import counting
 
@@ -27,7 +28,7 @@ def _text(tables: Tables, copies: int = 1) -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(amount(5, 12)))
 def test_random_nets(explorers: Explorers, monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """In counters of one bit at first, so that they overflow, and of four; with short keys or without."""
     monkeypatch.setattr(counting, "FEW", 0)

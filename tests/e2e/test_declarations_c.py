@@ -17,7 +17,7 @@ from helpers.thorough import THOROUGH, amount
 
 pytestmark = pytest.mark.cc
 
-EVERY = 19
+EVERY = 31
 """Of the cases, one out of so many, which is prime to the number of types."""
 
 

@@ -14,8 +14,8 @@ from helpers.thorough import amount
 def test_a_change_of_the_net_shows(tmp_path: Path) -> None:
     judge = Judge(write(tmp_path / "cell"), tmp_path / "room")
     found = list(changes(judge.data))
-    shown = {change.what: judge.shown(change).where for change in found[:: amount(4, 1)]}
-    assert len(shown) > 20
+    shown = {change.what: judge.shown(change).where for change in found[:: amount(8, 1)]}
+    assert len(shown) > amount(20, 100)
     assert not [what for what, where in shown.items() if where == "nowhere"]
     assert {"refused", "program"} <= set(shown.values())
 

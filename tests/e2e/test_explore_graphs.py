@@ -40,7 +40,7 @@ VARIANTS: dict[str, tuple[int | str, ...]] = {
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_against_definitions(tmp_path: Path, variant: str) -> None:
     graphs, *flags = VARIANTS[variant]
-    graphs = int(graphs) // amount(3, 1)
+    graphs = int(graphs) // amount(8, 1)
     program = explorer_test(tmp_path, "explore_graphs", PARTS, *map(str, flags))
     said = subprocess.run(
         [program, "1", str(graphs)], capture_output=True, text=True, check=False, timeout=600

@@ -314,7 +314,7 @@ def test_i10_a_signal_to_the_supervisor_stops_the_cell(cell: Cell, children: lis
     assert cell.leftovers("supervisor", *ROBOTS) == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT][: amount(1, 2)])
 def test_i10_a_signal_to_a_robot_stops_the_cell(
     cell: Cell, children: list[Child], number: int
 ) -> None:
@@ -653,7 +653,7 @@ def assert_results(out: Path, verdict: str) -> dict[str, object]:
     return summary
 
 
-@pytest.mark.parametrize("step", [0, 12, 1][: amount(2, 3)])
+@pytest.mark.parametrize("step", [12, 0, 1][: amount(1, 3)])
 def test_run_supervisor_killed(
     cell: Cell, children: list[Child], tmp_path: Path, step: int
 ) -> None:
@@ -777,7 +777,7 @@ def test_run_killed_the_supervisor_ends_by_itself(
         json.loads((tmp_path / "out" / name).read_text())
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT][: amount(1, 2)])
 def test_run_interrupted(cell: Cell, children: list[Child], tmp_path: Path, number: int) -> None:
     """In lock-step: the cell is stopped, and what it has done is there to be looked at."""
     command, seen = halted_run(cell, children, tmp_path)

@@ -36,7 +36,7 @@ pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 TOP = 100_000
 """What the register begins with: more than there is time for."""
-ROUNDS = amount(6, 60)
+ROUNDS = amount(3, 60)
 ENOUGH_S = 120.0
 
 

@@ -62,7 +62,7 @@ def test_a_hundred_megabytes_of_elements_are_refused(tmp_path: Path) -> None:
     """They are too many after the first sixteen."""
     one = b"<place id='ID1'><text>A</text></place>\n"
     head, tail = b"<workspaceElements><cpnet><page id='P'>", b"</page></cpnet></workspaceElements>"
-    size = amount(20, 100) * 1024 * 1024 - len(head) - len(tail)
+    size = amount(17, 100) * 1024 * 1024 - len(head) - len(tail)
     done = check(tmp_path, head + one * (size // len(one)) + tail)
     assert done.returncode == 1
     assert "xml-limit" in done.stdout + done.stderr

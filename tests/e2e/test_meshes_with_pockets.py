@@ -10,6 +10,8 @@ import pytest
 from e2e.test_check_geometry import looked
 from helpers.carrying_cell import NET, TOML, write
 from helpers.processes import pn2code
+from helpers.thorough import amount
+from pn2code.robot import convex_pieces
 from unit.robot.test_convex_pieces import trough
 
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
@@ -22,7 +24,10 @@ MESH = (
 
 
 @pytest.mark.parametrize("hulls", [1, 4])
-def test_reaching_into_a_trough(hulls: int, tmp_path: Path) -> None:
+def test_reaching_into_a_trough(
+    hulls: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(convex_pieces, "_TRIES", amount(3, 8))
     assert TOML.count(TABLE) == 1
     one = NET.replace("val parts = 2;", "val parts = 1;")
     cell = write(tmp_path / "cell", net=one, toml=TOML.replace(TABLE, MESH.format(hulls)))

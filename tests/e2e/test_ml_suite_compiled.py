@@ -11,7 +11,7 @@ from ml_suite import compiled, suite
 pytestmark = pytest.mark.cc
 
 
-@pytest.mark.parametrize("topic", suite.topics()[:: amount(3, 1)])
+@pytest.mark.parametrize("topic", suite.topics()[:: amount(6, 1)])
 def test_results(topic: str, workshop: Workshop) -> None:
     known = suite.not_compiled()
     cases = [case for case in suite.cases(topic) if case.name not in known]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from e2e.test_running_cell import examined, ran, write
+from helpers.thorough import amount
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -146,13 +147,13 @@ RACE = takes("Short", "n < 3", "flag : k") + takes("Long", "n < 4", "job : j")
         (cell(0, FLAG, RACE, count=5), False),
         (cell(1, FLAG, RACE, count=3), None),
         (cell(3, FLAG, RACE), True),
-    ],
+    ][:: amount(2, 1)],
     ids=[
         "one", "one too many", "two", "two too many", "never asked", "half a message",
         "both messages", "common", "common too many", "common never", "later never",
         "later half", "later", "apart", "apart once", "peeking", "deep half", "deep",
         "mixed", "race", "race waits", "race ends",
-    ],
+    ][:: amount(2, 1)],
 )  # fmt: skip
 def test_a_script_stops_where_the_check_says(net: str, ends: bool | None, tmp_path: Path) -> None:
     """`ends`: None, if the script waits for ever instead of stopping: that is a deadlock."""

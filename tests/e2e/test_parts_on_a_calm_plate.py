@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.meeting_cell import NET, TOML, meeting_cell
+from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.run.cell import RunOptions, run_cell
@@ -73,8 +74,8 @@ def seam(degrees: float) -> str:
     [
         (f"moveJoint ({AWAY}); moveHome ()", {"yes"}),
         ("turn 90.0; turn 0.0", {"no", "unknown"}),
-        (f"moveJoint ({AWAY}); {seam(40.0)}; moveHome ()", {"no"}),
-    ],
+        (f"moveJoint ({AWAY}); {seam(40.0)}; moveHome ()", {"no"}),  # as below
+    ][: amount(2, 3)],
 )
 def test_the_owner_moves_elsewhere(first: str, answers: set[str], tmp_path: Path) -> None:
     folder = cell(tmp_path / "cell", first, touches("grip ()"))

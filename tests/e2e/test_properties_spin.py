@@ -16,6 +16,7 @@ import pytest
 
 from helpers.asked import Net
 from helpers.property_nets import DINNER, ENDING, MUTEX
+from helpers.thorough import amount
 from pn2code.convert import promela
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import meaning as m
@@ -173,7 +174,7 @@ class Model:
         return errors[1] == "0"
 
 
-@pytest.mark.parametrize("name", FORMULAS)
+@pytest.mark.parametrize("name", [*FORMULAS][: amount(1, 99)])
 def test_spin_agrees(name: str, tmp_path: Path) -> None:
     """The explorer agrees with the judge elsewhere; here the judge agrees with SPIN."""
     text, formulas = FORMULAS[name]

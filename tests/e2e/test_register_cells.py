@@ -22,7 +22,7 @@ SEEDS = tuple(range(2000, 2000 + amount(1, 40)))
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_all_ways_agree_and_runs_contradict_none(seed: int, tmp_path: Path) -> None:
-    verdict = judge(seed, tmp_path, runs=8)
+    verdict = judge(seed, tmp_path, runs=amount(4, 8))
     assert not verdict.wrong
     assert verdict.counts["claim yes"] > 0
 

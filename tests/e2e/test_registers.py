@@ -20,10 +20,11 @@ from pn2code.run.cell import RunOptions, run_cell
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 
-def verified(cell: Path, *properties: str) -> dict[str, Any]:
+def verified(cell: Path, *properties: str, medium: bool = True) -> dict[str, Any]:
     asked = [word for p in properties for word in ("--property", p)]
-    traces = ["--threads", "1", "--traces", str(cell.parent / "traces")]
-    done = CliRunner().invoke(app, ["verify", str(cell), "--json", *traces, *asked])
+    options = ["--threads", "1", "--traces", str(cell.parent / "traces")]
+    options += [] if medium else ["--no-medium"]
+    done = CliRunner().invoke(app, ["verify", str(cell), "--json", *options, *asked])
     assert done.exit_code in (0, 1, 3), done.output
     said: dict[str, Any] = json.loads(done.stdout)
     return said
@@ -60,7 +61,7 @@ def test_who_is_told_to_look_sees_what_was_set_before(tmp_path: Path) -> None:
 def test_messages_that_are_never_needed_are_no_note(tmp_path: Path) -> None:
     """Nobody has drawn `Again` and `See again`, and nobody can do anything about them."""
     cell = register_pairs.write(tmp_path / "cell", register_pairs.TOLD)
-    said = verified(cell)
+    said = verified(cell, medium=False)
     assert any("See_again" in name for name in said["cell"]["dead_transitions"])
     assert said["notes"] == []
 

@@ -323,7 +323,7 @@ pose = st.tuples(coordinate, coordinate, coordinate, angle, angle, angle)
 
 
 @settings(
-    max_examples=amount(8, 15),
+    max_examples=amount(4, 15),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

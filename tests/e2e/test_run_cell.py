@@ -16,6 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.table_2 import table_2
+from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -61,11 +62,11 @@ def run(root: Path, out: Path, layout: str, backend: str) -> tuple[RunResult, No
     return result, noses
 
 
-@pytest.fixture(scope="module", params=["good", "paper"])
+@pytest.fixture(scope="module", params=["paper", "good"][: amount(1, 2)])
 def bullet_run(
     request: pytest.FixtureRequest, root: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[str, Path, RunResult, Noses]:
-    """One whole run in PyBullet for each layout."""
+    """One whole run in PyBullet for each layout; `test_bullet_path` goes along the good one each time."""
     out = tmp_path_factory.mktemp(request.param)
     result, noses = run(root, out, request.param, "bullet")
     return request.param, out, result, noses

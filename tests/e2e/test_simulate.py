@@ -103,9 +103,9 @@ def same_but_for(one: dict[str, Any], other: dict[str, Any]) -> None:
 # --- one run, two engines --------------------------------------------------------------------------
 
 
-@pytest.mark.usefixtures("as_delivered")
 @pytest.mark.parametrize("seed", [1, 7, 2**64 - 1])
 def test_the_same_seed_gives_the_same_run(tmp_path: Path, seed: int) -> None:
+    """As delivered in `make thorough`; `test_compilers` runs optimized simulators each time."""
     net = write(RANDOM, tmp_path / "cell.cpn")
     found = {}
     for engine in ("compiled", "reference"):

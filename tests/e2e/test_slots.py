@@ -12,6 +12,7 @@ import pytest
 
 from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
+from helpers.thorough import amount
 from pn2code.emission.c import emit
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.passes.analysis import bounded
@@ -138,7 +139,7 @@ def slots_of(header: str) -> int:
     return len(re.findall(r"^    \w+_slot(?:_\d+)?_t \w+;$", header, re.MULTILINE))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(amount(3, 8)))
 def test_random_nets_with_slots_and_token_game_agree(
     seed: int, workshop: Workshop, tmp_path: Path
 ) -> None:

@@ -21,7 +21,7 @@ from helpers.unions import PER_UNION, Outcome, alone, check
 pytestmark = pytest.mark.cc
 
 NETS = amount(8, 400)
-UNIONS = amount(4, 600)
+UNIONS = amount(2, 600)
 GROUPS = 12
 """As many as there are styles, with and without priorities."""
 SEED = int(os.environ.get("PN2CODE_SEED", "0"))

@@ -159,7 +159,7 @@ def by_transitions(
 @pytest.mark.parametrize("seed", range(amount(1, 20)))
 def test_dead_markings_of_processes(explorers: Explorers, seed: int) -> None:
     """With code segments, references, priorities, lists; all nets of the file in one program."""
-    whole, found = by_transitions(explorers, flat(concurrent(seed, amount(8, 30))))
+    whole, found = by_transitions(explorers, flat(concurrent(seed, amount(5, 30))))
     assert found.report["complete"], found.report
     assert found.report["nodes"] < whole.report["nodes"]
     assert dead_of(found) == dead_of(whole)
@@ -169,7 +169,7 @@ def test_dead_markings_of_processes(explorers: Explorers, seed: int) -> None:
 @pytest.mark.parametrize("seed", range(amount(1, 20)))
 def test_dead_markings_of_processes_that_count(explorers: Explorers, seed: int) -> None:
     """Where transitions replace the only tokens of places, in ways of which some commute."""
-    whole, found = by_transitions(explorers, flat(concurrent(seed, amount(6, 30), counters=3)))
+    whole, found = by_transitions(explorers, flat(concurrent(seed, amount(4, 30), counters=3)))
     assert found.report["complete"], found.report
     assert found.report["nodes"] < 0.7 * whole.report["nodes"]
     assert dead_of(found) == dead_of(whole)

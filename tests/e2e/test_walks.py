@@ -12,7 +12,7 @@ from helpers.walks import Walk, nets, walk
 
 pytestmark = pytest.mark.cc
 
-EVERY = amount(61, 17)
+EVERY = amount(122, 17)
 """One net of so many; one of those of so many again with sanitizers."""
 
 

@@ -110,11 +110,11 @@ def test_its_state_space_is_explored(installed: Path, root: Path, tmp_path: Path
 def test_the_installed_package_generates_and_builds(
     installed: Path, root: Path, tmp_path: Path
 ) -> None:
-    shutil.copytree(root / "examples" / "riveting", tmp_path / "cell")
+    shutil.copytree(root / "examples" / "minimal", tmp_path / "cell")
     assert "no errors" in verb(installed, tmp_path, "check", tmp_path / "cell")
     verb(installed, tmp_path, "generate", tmp_path / "cell", "-o", "out")
     subprocess.run(
-        ["make", "-s", "supervisor", "supervisor.traced", "CFLAGS=-O0"],
+        ["make", "-s", "supervisor.traced", "CFLAGS=-O0"],
         cwd=tmp_path / "out",
         check=True,
         timeout=600,
@@ -123,4 +123,4 @@ def test_the_installed_package_generates_and_builds(
         ["./supervisor.traced", "--dry-run"], cwd=tmp_path / "out",
         capture_output=True, text=True, check=True, timeout=600,
     )  # fmt: skip
-    assert "dadosrobo1.robcad: 5750.0000" in played.stdout
+    assert "supervisor -> robot  order.robcad: 3" in played.stdout

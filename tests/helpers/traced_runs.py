@@ -7,10 +7,17 @@ import subprocess
 from pathlib import Path
 
 
-def make(folder: Path, *options: str) -> None:
+def make(folder: Path, *options: str, optimized: bool = True) -> None:
     """Builds the supervisor and the simulator; options are those of make, such as `CC=clang`."""
     env = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "CFLAGS"))}
-    command = ["make", "-s", *options, "CFLAGS=-O1", "supervisor.traced", "simulate"]
+    command = [
+        "make",
+        "-s",
+        *options,
+        f"CFLAGS=-O{int(optimized)}",
+        "supervisor.traced",
+        "simulate",
+    ]
     done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 

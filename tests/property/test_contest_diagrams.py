@@ -23,7 +23,7 @@ from pn2code.contest.tables import Tables
 
 pytestmark = pytest.mark.cc
 
-NETS = amount(25, 60)
+NETS = amount(12, 60)
 """`./dev fuzz --diagrams N` takes more."""
 
 

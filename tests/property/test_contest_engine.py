@@ -17,7 +17,7 @@ from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, To
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
-NETS = amount(60, 150)
+NETS = amount(30, 150)
 PROCESSOR_S = 3
 """Of processor time; it takes a tenth of that."""
 SECONDS = 600.0

@@ -17,7 +17,7 @@ from pn2code.contest.conditions import AtMost, Dead
 from pn2code.contest.equation import StateEquation, wait_for_solver
 from pn2code.contest.tables import Tables
 
-NETS = amount(60, 150)
+NETS = amount(30, 150)
 
 
 def later() -> float:

@@ -66,7 +66,7 @@ FAMILIES = (rings, joined, sparse_tables, random_tables, restless_tables, colour
 def test_what_is_implied(family: Callable[[random.Random], Tables]) -> None:
     """What is asked is as true as all; without dead markings a net is live if each transition implies all."""
     less = one = live = 0
-    for seed in range(amount(40, 150)):
+    for seed in range(amount(20, 150)):
         tables = family(random.Random(seed))
         graph = Graph.of(tables, MOST)
         if graph is None:

@@ -17,7 +17,7 @@ from tools.fuzz.nets import MIXED, TIMED, bases
 ROOT = Path(__file__).resolve().parents[2]
 
 NOWHERE = Path("/nonexistent")
-CASES = amount(15, 400)
+CASES = amount(8, 400)
 FIRST = [0, 1_000, 2_000][: amount(1, 3)]
 """In the ordinary run one worker, which takes as long to start as twenty cases do, has all of the examples' cases."""
 

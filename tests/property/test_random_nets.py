@@ -23,7 +23,7 @@ RELAXED = settings(
 
 
 @given(st.randoms(use_true_random=False))
-@settings(RELAXED, max_examples=amount(20, 40))
+@settings(RELAXED, max_examples=amount(10, 40))
 def test_random_nets_are_accepted(r: Random) -> None:
     text = random_net(r)
     flat, d = load(text)
@@ -45,7 +45,7 @@ def test_compiled_random_nets_do_what_the_token_game_does(workshop: Workshop, r:
 
 
 @pytest.mark.cc
-@pytest.mark.parametrize("number", [1, 2, 7, 1025, 1049, 1085])
+@pytest.mark.parametrize("number", [1, 1025, 1085, 2, 7, 1049][: amount(3, 6)])
 def test_numbered_random_nets(workshop: Workshop, number: int) -> None:
     check(random_net(Random(number)), workshop, number)
 

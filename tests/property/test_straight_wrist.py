@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.robot_cells import arm_kinematics
+from helpers.thorough import amount
 from pn2code.robot.commands import Pose
 from pn2code.robot.motion import plan_lin
 from pn2code.robot.motion_fault import MotionFault
@@ -169,7 +170,7 @@ def check_way(k, q, move):
     assert np.abs(said - np.gradient(path, times, axis=0)[::15])[1:-1].max() < 0.1
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=amount(5, 10), deadline=None)
 @given(
     st.sampled_from(MODELS),
     st.integers(0, 2**32),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import arm_kinematics, pose_mm, riveting_cell
+from helpers.thorough import amount
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.pieces import between, gaps
 from pn2code.geometry.tracks import ArmShape, Knots, Track
@@ -63,7 +64,7 @@ def corners(track: Track, q: np.ndarray) -> np.ndarray:
     return out
 
 
-@pytest.mark.parametrize("number", range(7))
+@pytest.mark.parametrize("number", range(amount(4, 7)))
 def test_no_point_is_further_off_than_the_spread(
     cell: RobotCell, shapes: dict[str, ArmShape], number: int
 ) -> None:

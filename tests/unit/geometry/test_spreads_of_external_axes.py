@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import pose_mm
+from helpers.thorough import amount
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.bullet import BulletBackend
@@ -43,7 +44,7 @@ def legs() -> list[Leg]:
     return out
 
 
-@pytest.mark.parametrize("number", range(9))
+@pytest.mark.parametrize("number", range(amount(4, 9)))
 def test_no_point_is_further_off_than_the_spread(shape: ArmShape, number: int) -> None:
     leg = legs()[number]
     assert leg.path is not None

@@ -12,6 +12,7 @@ import pytest
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from helpers.random_nets import random_net
+from helpers.thorough import amount
 from pn2code.emission.c import emit
 from pn2code.ir import nodes as ir
 from pn2code.ir.dump import dump
@@ -140,7 +141,7 @@ def _wrong(code: str) -> Iterator[str]:
             yield "b"
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(amount(5, 12)))
 def test_the_c_of_random_nets_declares_what_it_names(seed: int) -> None:
     r = random.Random(seed)
     text = random_net(r)

@@ -75,7 +75,7 @@ def on_faces(file: Path, count: int = 3000) -> Array:
     return np.vstack([points, spread])
 
 
-@pytest.mark.parametrize("most", [3, 2, 8][: amount(1, 3)])
+@pytest.mark.parametrize("most", [4, 2, 8][: amount(1, 3)])
 def test_no_point_of_the_mesh_is_outside_of_all_pieces(
     most: int, tmp_path: Path, fewer_tries: None
 ) -> None:
@@ -118,12 +118,11 @@ def test_pieces_are_kept_and_always_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fewer_tries: None
 ) -> None:
     file = trough(tmp_path)
-    found = []
-    for folder in ("a", "b"):
-        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / folder))
-        pieces.cache_clear()
-        found.append(pieces(file, 4))
-    assert all(map(np.array_equal, *found))
+    found = [pieces(file, 4)]  # of other tests
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "b"))
+    pieces.cache_clear()
+    found.append(pieces(file, 4))
+    assert len(found[0]) > 1 and all(map(np.array_equal, *found))
     (kept,) = (tmp_path / "b" / "pn2code").glob("hulls-*.json")
     monkeypatch.setattr(convex_pieces, "_divided", lambda *_: pytest.fail("divided once more"))
     pieces.cache_clear()

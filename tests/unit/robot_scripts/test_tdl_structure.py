@@ -295,7 +295,7 @@ def graphs(draw: st.DrawFn) -> dict[int, Tree]:
     return {s: tree(f"t{s}") for s in range(1, size + 1)}
 
 
-@settings(max_examples=amount(75, 150), deadline=None, derandomize=True)
+@settings(max_examples=amount(40, 150), deadline=None, derandomize=True)
 @given(graphs(), st.integers(0, 2**20 - 1))
 def test_the_structured_program_has_the_traces_of_the_graph(
     trees: dict[int, Tree], value: int
@@ -311,7 +311,7 @@ def test_the_structured_program_has_the_traces_of_the_graph(
         assert run_script(text) == expected
 
 
-@settings(max_examples=amount(30, 60), deadline=None, derandomize=True)
+@settings(max_examples=amount(15, 60), deadline=None, derandomize=True)
 @given(graphs())
 def test_every_state_that_can_be_reached_is_there_once(trees: dict[int, Tree]) -> None:
     """Nothing is duplicated: as many marks in the script as in the trees that can be reached."""
@@ -342,7 +342,7 @@ def test_every_state_that_can_be_reached_is_there_once(trees: dict[int, Tree]) -
     assert found == sorted(m for s in reached for m in marks(trees[s]))
 
 
-@settings(max_examples=amount(30, 60), deadline=None, derandomize=True)
+@settings(max_examples=amount(15, 60), deadline=None, derandomize=True)
 @given(graphs())
 def test_structured_programs_have_no_unreachable_statements(trees: dict[int, Tree]) -> None:
     text = script(1, trees, 0)

@@ -9,6 +9,7 @@ from math import gcd
 import flint
 import pytest
 
+from helpers.thorough import amount
 from pn2code.base.how_far import listening
 from pn2code.structure.flows import (
     Limits,
@@ -53,7 +54,7 @@ def by_enumeration(rows: Matrix, columns: int) -> set[tuple[tuple[int, int], ...
     return found
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(amount(15, 40)))
 def test_minimal_invariants_are_those_found_by_enumeration(seed: int) -> None:
     r = random.Random(seed)
     rows, columns = matrix(r, r.randint(1, 7), 3), 3
@@ -62,7 +63,7 @@ def test_minimal_invariants_are_those_found_by_enumeration(seed: int) -> None:
     assert {tuple(sorted(v.items())) for v in found.vectors} == by_enumeration(rows, columns)
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(amount(10, 25)))
 def test_a_basis_spans_all_integer_invariants(seed: int) -> None:
     """Some small integer vectors that are invariants are integer combinations of the basis."""
     r = random.Random(seed)

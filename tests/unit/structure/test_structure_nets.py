@@ -15,6 +15,7 @@ import pytest
 from helpers.netbuilder import flat, load, write
 from helpers.random_nets import random_net
 from helpers.structure import wrong_in, wrong_on_walk, wrong_proofs, wrong_step
+from helpers.thorough import amount
 from pn2code.cli import main
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.graph import state_space
@@ -295,7 +296,7 @@ def subsets(places: int, rule: Any) -> list[frozenset[int]]:
     return [s for s in chosen if rule(s)]
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(amount(10, 25)))
 def test_siphons_and_traps_are_those_found_by_enumeration(seed: int) -> None:
     r = random.Random(seed)
     count = r.randint(2, 7)
@@ -744,7 +745,7 @@ def accepted_net(seed: int) -> FlatNet:
     raise AssertionError("no net is accepted")
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(amount(10, 25)))
 def test_random_nets(seed: int) -> None:
     """Whatever is claimed of a net at random holds along walks."""
     made = accepted_net(seed + 5000)

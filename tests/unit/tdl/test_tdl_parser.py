@@ -242,7 +242,7 @@ WORDS = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=amount(75, 150), deadline=None, derandomize=True)
+@settings(max_examples=amount(40, 150), deadline=None, derandomize=True)
 @given(st.one_of(st.text(max_size=80), st.lists(WORDS, max_size=40).map(" ".join)))
 def test_arbitrary_text_never_crashes_the_parser(text: str) -> None:
     for whole in (text, f"program p var x : int begin {text} end program"):
@@ -285,7 +285,7 @@ EXPRESSIONS = st.recursive(
 )
 
 
-@settings(max_examples=amount(75, 150), deadline=None, derandomize=True)
+@settings(max_examples=amount(40, 150), deadline=None, derandomize=True)
 @given(EXPRESSIONS)
 def test_printed_expressions_parse_to_the_same_tree(e: t.Expression) -> None:
     assert value(expression(e)) == e

@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 
+from helpers.thorough import amount
 from pn2code.timing.longest import Arc, TimedPaths, longest_inside, shortest
 
 
@@ -26,7 +27,7 @@ def all_ways(graph: list[list[Arc]], ends: set[int], node: int = 0, ns: int = 0)
         yield from all_ways(graph, ends, target, ns + more)
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(amount(20, 60)))
 def test_they_are_the_least_and_the_most_of_all(seed: int) -> None:
     r = Random(seed)
     graph = acyclic(r, 9)
