@@ -188,6 +188,8 @@ def _twice(place: etree._Element) -> bool:
     if text is None or text.text is None:
         return False
     if text.text.strip().isdigit():
+        if int(text.text) == 0:  # twice nothing
+            return False
         text.text = str(2 * int(text.text))
     else:
         text.text = (
