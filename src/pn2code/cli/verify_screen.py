@@ -235,6 +235,9 @@ def screen(said: Said) -> str:
         partial = f"PARTIAL: {outcome.header(said.net, said.found, said.counts)}"
         lines += [*textwrap.wrap(partial, _WIDTH), ""]
     lines += _sizes(said)
+    crowd = said.control.crowd if said.control is not None else None
+    if crowd is not None:
+        lines += (x for name, what in crowd.lines() for x in _row(name, what))
     remarks = list(_as_it_runs(said))
     items = tuple(_items(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
