@@ -50,6 +50,7 @@ from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import REACHED, Limits, Order
+from pn2code.verify.exploring.numbers_as_tokens import numbers_as_tokens
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
@@ -164,6 +165,23 @@ def abstract(
     return Abstract(running, made.counts, made.turns, made.ranking, made.sizes, tuple(properties))
 
 
+def with_tokens(
+    partition: Partition, plan: Plan, kept: Sequence[int], properties: Sequence[Stated] = ()
+) -> Partition:
+    """The cell with those counters of its supervisor as tokens of which nothing is asked (`numbers_as_tokens`)."""
+    others = {*kept, *plan.capacities, *partition.final_places}
+    others |= {c.place for c in partition.channels} | {x.place for x in partition.inputs}
+    others |= {place for p in plan.properties.predicates for _, place in p.places}
+    others |= {place for x in properties for place in (*x.places, *x.exact)}
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        if owner != SUPERVISOR:
+            others |= {a.place for a in t.arcs}
+    among = {p.index for p in partition.net.places} - others
+    made = numbers_as_tokens(partition.net, plan.storage, among)
+    owners = (*partition.place_owner, *[SUPERVISOR] * made.added)
+    return replace(partition, net=made.net, place_owner=owners)
+
+
 def look(
     partition: Partition,
     plan: Plan,
@@ -188,6 +206,8 @@ def look(
     properties = _open_properties(partition, plan, known)
     made = None
     if properties is not None:
+        partition = with_tokens(partition, plan, options.whole, [x for _, x in properties])
+        properties = _open_properties(partition, plan, known) or []
         made = abstract(partition, plan, options.whole, [x for _, x in properties])
     if made is None or properties is None:
         return None
