@@ -166,7 +166,10 @@ def abstract(
 
 
 def with_tokens(
-    partition: Partition, plan: Plan, kept: Sequence[int], properties: Sequence[Stated] = ()
+    partition: Partition,
+    plan: Plan,
+    kept: Sequence[int] = (),
+    properties: Sequence[Stated] = (),
 ) -> Partition:
     """The cell with those counters of its supervisor as tokens of which nothing is asked (`numbers_as_tokens`)."""
     others = {*kept, *plan.capacities, *partition.final_places}
