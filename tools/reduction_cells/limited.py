@@ -16,7 +16,14 @@ from typing import Any
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.controller.by_counts import Abstract, abstract, questions, with_tokens
+from pn2code.verify.controller.by_counts import (
+    Abstract,
+    abstract,
+    memory_of_numbers,
+    questions,
+    with_memory,
+    with_tokens,
+)
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.exploring.counts import Counts, Limit
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -55,6 +62,8 @@ class Limited:
     program: Generated
     known: frozenset[int]
     """places that are the same in the net of which this one was made"""
+    more_memory: int
+    """bytes that a firing may need more in that"""
 
     @staticmethod
     def of(partition: Partition, plan: Plan) -> Limited | None:
@@ -70,7 +79,8 @@ class Limited:
             for p in range(len(own) if is_longer else count)
             if p >= len(own) or own[p].colset == cell.net.places[p].colset
         )
-        return Limited(plan, made, Generated(), known)
+        more = memory_of_numbers(partition.net, cell.net)
+        return Limited(plan, made, Generated(), known, more)
 
     def judged(self, whole: Exploration, counts: Counter[str]) -> Iterator[str]:
         """What is wrong."""
@@ -152,7 +162,7 @@ class Limited:
                 yield f"place {p} holds {b.lower} to {b.upper}, not {a.lower} to {a.upper}"
         if whole.dead_count and not found.dead_count:
             yield "there are dead markings"
-        mine, its = found.arena or {}, whole.arena or {}
+        mine, its = with_memory(found.arena, self.more_memory) or {}, whole.arena or {}
         if any(mine.get(part, 0) < size for part, size in its.items()):
             yield f"firings need memory: {its}, not {mine}"
 

@@ -38,6 +38,7 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
 from pn2code.properties.questions import ENDLESS, Questions
 from pn2code.verify.controller import diamonds
 from pn2code.verify.controller.by_turns import Looked, group, loosened
@@ -185,6 +186,28 @@ def with_tokens(
     return replace(partition, net=made.net, place_owner=owners)
 
 
+MOVED = 256
+"""Bytes that a firing may need to take and put a number, and not for packed tokens: two moves with values."""
+
+
+def memory_of_numbers(net: FlatNet, written: FlatNet) -> int:
+    """So many bytes more than with counters as tokens a firing may need with the numbers of the net.
+
+    Where several bindings are looked at, there is room for twice as much, as there is for places that are packed
+    otherwise in what is deployed (`arena`).
+    """
+    counters = {p.index for p in net.places if p.colset != written.places[p.index].colset}
+    touched = (len(counters & {a.place for a in t.arcs}) for t in net.transitions)
+    return MOVED * max(touched, default=0)
+
+
+def with_memory(arena: Mapping[str, int] | None, more: int) -> Mapping[str, int] | None:
+    """What firings need, if they need any, with so much more."""
+    if arena is None or not arena["firing"]:
+        return arena
+    return {**arena, "firing": arena["firing"] + more}
+
+
 def look(
     partition: Partition,
     plan: Plan,
@@ -207,9 +230,11 @@ def look(
     """
     known = part.answers[: len(plan.properties.properties)]
     properties = _open_properties(partition, plan, known)
-    made = None
+    made, more_memory = None, 0
     if properties is not None:
+        net = partition.net
         partition = with_tokens(partition, plan, options.whole, [x for _, x in properties])
+        more_memory = memory_of_numbers(net, partition.net)
         properties = _open_properties(partition, plan, known) or []
         made = abstract(partition, plan, options.whole, [x for _, x in properties])
     if made is None or properties is None:
@@ -259,6 +284,7 @@ def look(
     longest, firings = lengths
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
+    found = replace(found, arena=with_memory(found.arena, more_memory))
     looked = Looked(running, _bounded(found, made, plan), None)
     told: dict[int, Mapping[str, Any]] = {i: {**row, "part": True} for i, row in enumerate(known)}
     for (i, x), row in zip(properties, rows, strict=False):
