@@ -34,7 +34,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import INT, TCon
 from pn2code.net.flat import FlatNet, FlatPlace, Form
-from pn2code.semantics.game.enabling import running
+from pn2code.semantics.game.errors import running
 from pn2code.semantics.game.marking import PlaceMarking, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json, to_json

@@ -3,7 +3,7 @@
 
 import { el, isStill, shorten, svg } from "./dom.js";
 import { Flights } from "./flights.js";
-import { bubble, callout } from "./tokens.js";
+import { bubble, callout, isLong } from "./tokens.js";
 import { Window } from "./window.js";
 
 const LIT_S = 0.4;
@@ -71,7 +71,8 @@ export class NetView {
     });
     this.pageTokens = this.net.pages.map((/** @type {any} */ p) => new Map(Object.entries(p.tokens)));
     this.pageSubpages = this.net.pages.map((/** @type {any} */ p) => new Map(Object.entries(p.subpages)));
-    this.pageHidden = this.net.pages.map((/** @type {any} */ p) => new Set(p.hidden));
+    /** How much of the marking of a place is shown, by the page's places; those whose author has hidden it begin so. */
+    this.extents = this.net.pages.map((/** @type {any} */ p) => new Map(p.hidden.map((/** @type {string} */ id) => [id, "hidden"])));
   }
 
   /** @param {HTMLElement} pane */
@@ -361,11 +362,36 @@ export class NetView {
       const at = /** @type {number[]|undefined} */ (this.pageTokens[page].get(id));
       if (!at) continue;
       const held = { n: this.course.count(place), text: this.course.text(place), name: this.net.places[place].name };
-      const { node, box } = bubble(held, at, this.pageHidden[page].has(id), style);
+      const choose = (/** @type {import("./tokens.js").Extent} */ to) => {
+        if (!this.window.moved) this.extend(id, to);
+      };
+      const { node, box } = bubble(held, at, this.extents[page].get(id) ?? "short", style, choose);
       if (known) known.node.replaceWith(node);
       else this.over.append(node);
       this.tokenNodes.set(id, { version, node, box });
     }
+  }
+
+  /**
+   * Shows more or less of a place's marking.
+   * @param {string} id of a place of the page that is shown
+   * @param {import("./tokens.js").Extent} to
+   */
+  extend(id, to) {
+    this.extents[this.net.instances[this.current].page].set(id, to);
+    const known = this.tokenNodes.get(id);
+    if (known) known.version = -1;
+    this.tokens();
+    if (this.window.isFitted) this.fit();
+  }
+
+  /** The next amount of the selected place's marking, if the place is on this page: hidden, short, long. */
+  extendSelected() {
+    const of = this.places?.[this.current].find(({ place }) => place === this.selectedPlace);
+    if (!of) return;
+    const now = this.extents[this.net.instances[this.current].page].get(of.id) ?? "short";
+    const grown = isLong(this.course.text(of.place)) ? "long" : "hidden";
+    this.extend(of.id, now === "hidden" ? "short" : now === "short" ? grown : "hidden");
   }
 
   /**

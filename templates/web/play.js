@@ -29,6 +29,7 @@ const KEYS = [
   ["B", "breakpoint at the selected transition"],
   ["S", "the state space around this marking"],
   ["F", "follow: turn to the page where things happen"],
+  ["M", "more or less of the selected place's marking in the drawing, or nothing"],
   ["1 … 9", "panels; Tab goes on in them"],
   ["Esc", "in bindings or a place: back to where they were opened"],
   ["/", "find a transition or a place"],
@@ -282,7 +283,7 @@ class Page {
         this.tab("Space");
         this.space?.draw();
       },
-      f: () => this.net.setFollowing(!this.net.isFollowing), "/": () => this.search.focus(), d: () => this.frame.dark(), "?": help,
+      f: () => this.net.setFollowing(!this.net.isFollowing), m: () => this.net.extendSelected(), "/": () => this.search.focus(), d: () => this.frame.dark(), "?": help,
     };
     if (/^[1-9]$/.test(e.key)) {
       const wanted = this.tabs?.[Number(e.key) - 1];

@@ -276,7 +276,7 @@ export class ReplayPage {
       ",": () => clock.setSpeed(clock.speed / 1.25), ".": () => clock.setSpeed(clock.speed * 1.25),
       "[": () => this.toMark(-1), "]": () => this.toMark(1), "/": () => this.search.focus(), "?": help,
       f: () => this.net.setFollowing(!this.net.isFollowing), d: () => this.frame.dark(),
-      p: () => this.showPaths(!this.cell?.hasPaths),
+      p: () => this.showPaths(!this.cell?.hasPaths), m: () => this.net.extendSelected(),
       w: () => this.place >= 0 && (this.watch?.add(this.place), this.tab("Watch")),
       n: () => this.transition >= 0 && this.selectTransition(this.transition, true),
     };

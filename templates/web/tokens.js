@@ -5,20 +5,26 @@ import { shorten, svg } from "./dom.js";
 
 /** @typedef {{left: number, top: number, right: number, bottom: number}} Box */
 /** @typedef {{node: any, box: Box | null}} Bubble */
+/** @typedef {"hidden" | "short" | "long"} Extent how much of a marking stands beside its place */
 
+/** Lines of a marking that nobody has asked to see longer: more would cover what is drawn below. */
+const SHORT_LINES = 8;
 /** Lines of a binding beside its transition, and how long they are. */
 const BINDING_LINES = 5;
 const BINDING_WIDTH = 46;
 
 /**
  * The bubble with the number of tokens, and the marking beside it; and where they are, which the browser need not be asked.
+ *
+ * A click on the number hides the marking or shows it, as in CPN Tools; one on a long marking shows more or less of it.
  * @param {{n: number, text: string, name: string}} held
  * @param {number[]} at
- * @param {boolean} hidden whether the author has hidden the marking
+ * @param {Extent} extent
  * @param {any} style
+ * @param {(to: Extent) => void} onChoose
  * @returns {Bubble}
  */
-export function bubble({ n, text, name }, at, hidden, style) {
+export function bubble({ n, text, name }, at, extent, style, onChoose) {
   const group = svg("g", { class: "tokens" });
   if (!n) return { node: group, box: null };
   const number = String(n);
@@ -26,26 +32,39 @@ export function bubble({ n, text, name }, at, hidden, style) {
   const [x, y] = [at[0] + r, at[1]];
   const box = { left: x - r, top: y - r, right: x + r, bottom: y + r };
   group.append(svg("title", { text: `${name}\n${shorten(text, 2000)}` }));
-  if (!hidden) {
-    const { lines, w, h } = block(text.split("\n"), style.width, style.lines, style);
+  if (extent !== "hidden") {
+    const all = text.split("\n");
+    const { lines, w, h } = block(all, style.width, extent === "long" ? style.lines : SHORT_LINES, style);
     const left = x + r + at[2];
     const top = y + at[3] - h / 2;
-    group.append(
-      svg("rect", {
-        x: left, y: top - 1, width: w + 6, height: h + 2, fill: style.tokenFill, "fill-opacity": 0.85,
-        stroke: style.tokenLine, "stroke-width": 0.75,
-      }),
-      svg("text", { fill: "#000", "xml:space": "preserve" }, ...spans(lines, left + 3, top, style)));
+    const marking = svg("g", {}, svg("rect", {
+      x: left, y: top - 1, width: w + 6, height: h + 2, fill: style.tokenFill, "fill-opacity": 0.85,
+      stroke: style.tokenLine, "stroke-width": 0.75,
+    }), svg("text", { fill: "#000", "xml:space": "preserve" }, ...spans(lines, left + 3, top, style)));
+    if (isLong(text)) {
+      marking.setAttribute("class", "choice");
+      marking.addEventListener("click", () => onChoose(extent === "long" ? "short" : "long"));
+    }
+    group.append(marking);
     box.left = Math.min(box.left, left);
     box.right = Math.max(box.right, left + w + 6);
     box.top = Math.min(box.top, top - 1);
     box.bottom = Math.max(box.bottom, top + h + 1);
   }
-  group.append(
+  const counter = svg("g", { class: "choice" },
     svg("circle", { cx: x, cy: y, r, fill: style.tokenFill, stroke: style.tokenLine }),
-    svg("text", { x, y: y + style.size * 0.35, "text-anchor": "middle", fill: "#000", text: number }),
-  );
+    svg("text", { x, y: y + style.size * 0.35, "text-anchor": "middle", fill: "#000", text: number }));
+  counter.addEventListener("click", () => onChoose(extent === "hidden" ? "short" : "hidden"));
+  group.append(counter);
   return { node: group, box };
+}
+
+/**
+ * Whether a marking has more lines than stand beside its place at first.
+ * @param {string} text
+ */
+export function isLong(text) {
+  return text.split("\n", SHORT_LINES + 1).length > SHORT_LINES;
 }
 
 /**

@@ -16,6 +16,7 @@ const KEYS = [
   [", .", "slower, faster"],
   ["/", "find a transition, a place, a value"],
   ["F", "follow: turn to the page where things happen"],
+  ["M", "more or less of the selected place's marking in the drawing, or nothing"],
   ["W", "watch the selected place"],
   ["N", "to the next occurrence of the selected transition"],
   ["1 … 9", "views of the cell"],

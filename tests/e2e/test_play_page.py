@@ -75,16 +75,28 @@ class TestPlaying:
         browser.page.get_by_text("`Put down` is not enabled").wait_for()
         assert position(browser) == 1
 
-    def test_a_name_wider_than_its_box_does_not_lie_in_the_way(
+    def test_wide_names_and_long_markings_do_not_lie_in_the_way(
         self, chromium: Any, tmp_path: Path
     ) -> None:
-        text = 'page Top\n  place A : INT = 1`0\n  trans "A name that is much wider than its box"\n    both A : 0\n'
+        tokens = "++".join(f"1`{i}" for i in range(25))
+        place = f"page Top\n  place A : INT = {tokens}\n"
+        text = f'{place}  trans "A name that is much wider than its box"\n    both A : 0\n'
         net = tmp_path / "wide.cpnt"
         net.write_text(f"standard\n{text}", encoding="utf-8")
         with served(net) as wide, opened(chromium) as browser:
             visit(browser, wide)
             browser.page.locator(".sheet .enabled").click()
             at(browser, 1)
+            lines = "() => document.querySelectorAll('#net .tokens tspan').length"
+            shown = [browser.ask(lines)]
+            for clicked in ("tspan", "circle", "circle"):
+                browser.page.locator(f"#net .tokens .choice:has({clicked})").click()
+                shown.append(browser.ask(lines))
+            browser.page.get_by_role("button", name="place A").click()
+            for _ in range(3):
+                browser.page.keyboard.press("m")
+                shown.append(browser.ask(lines))
+            assert shown == [8, 20, 0, 8, 20, 0, 8]
 
     def test_a_binding_is_chosen(self, browser: Page) -> None:
         transition(browser, "Take left").click(button="right")

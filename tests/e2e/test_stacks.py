@@ -140,7 +140,7 @@ def test_a_tray_that_is_tilted_loses_what_stands_on_it(tmp_path: Path) -> None:
     """What is proved of that: `tests/unit/geometry/test_level.py`."""
     found = run(tray_cell(tmp_path / "cell", STEEP), tmp_path / "fake")
     assert found.record.verdict == "failed"
-    assert "`robot` tilts `box.1` by 10" in found.record.reason
+    assert "`robot` tilts `box.1` by 11.0 deg" in found.record.reason
 
 
 @pytest.mark.parametrize(

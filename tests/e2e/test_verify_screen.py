@@ -110,7 +110,7 @@ def test_the_last_steps_are_there_whatever_else_is_said(tmp_path: Path, here: Pa
 def test_a_long_run_keeps_its_last_steps(
     tmp_path: Path, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pn2code.cli.verify_screen.MOST_STEPS", 4)
+    monkeypatch.setattr("pn2code.cli.verify_run.MOST_STEPS", 4)
     _, lines, _ = verify(write(tmp_path / "cell", HALF), "--no-medium")
     text = "\n".join(lines)
     assert "too long" not in text

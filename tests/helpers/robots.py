@@ -24,7 +24,8 @@ from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.parse import parse
 from pn2code.tdl.pretty import statements
 from pn2code.tdl.requests import AwaitFile, Event, Execute, Marked, MessageWritten, Request, Scalar
-from pn2code.trace.replay import ReplayResult, replay_lines
+from pn2code.trace.replay import replay_lines
+from pn2code.trace.replay_result import ReplayResult
 
 DECLARATIONS = """
   standard

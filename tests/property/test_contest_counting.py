@@ -13,11 +13,13 @@ import pytest
 from helpers.examined import sizes
 from helpers.random_tables import Graph, random_tables, restless_tables
 from helpers.table_families import kanban
-from pn2code.contest.counting import Counted, smaller, units_of
+from pn2code.contest.counted import Counted
+from pn2code.contest.counting import smaller
 from pn2code.contest.engine import Space, Task, ask, engine
 from pn2code.contest.reduction.net import Affine
 from pn2code.contest.space import space
 from pn2code.contest.tables import Tables
+from pn2code.contest.units import units_of
 from pn2code.diagnostics import Diagnostics
 
 SECONDS = 600.0

@@ -15,14 +15,15 @@ import numpy as np
 from tools.geometry.eyes import Eyes
 
 from pn2code.geometry.graph import CellGraph
+from pn2code.robot.active_motion import Motion, MotionKind, turned, turned_by
 from pn2code.robot.belts import until_stop
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.clamps import closed_on, closing, holding, nearest, on_nothing, shut, taken_along
 from pn2code.robot.commands import Command, Move, ToolAction
-from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, turned_by
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of

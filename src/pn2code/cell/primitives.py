@@ -14,36 +14,32 @@ Elsewhere (guards, arcs, delays, initial markings, constants, and all pages of t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from pn2code.cell import codes
-from pn2code.cell.axes_types import is_axes
-from pn2code.cell.config import GOING, CellConfig, CommandName, Primitive
+from pn2code.cell.config import CellConfig, CommandName, Primitive
 from pn2code.cell.named_elsewhere import TURNING
 from pn2code.cell.partition import Owner, OwnerKind, Partition
-from pn2code.cell.pose_types import is_pose, pose_types
+from pn2code.cell.pose_types import pose_types
+from pn2code.cell.primitive_types import (
+    RECORDS,
+    TAKES,
+    carries_nothing,
+    fits,
+    moves_at_speed,
+    other_commands,
+    result_of,
+    takes_any_pose,
+    taking,
+)
 from pn2code.cell.reach import Reach, bound
+from pn2code.cell.unused_values import expressions_of, gives_back, unused_in, values_of
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
+from pn2code.ml.core.types import UNIT, TFun
 from pn2code.net.flat import CodeSegment, FlatTransition
-from pn2code.net.uses import walk
 from pn2code.robot.commands import CHANGES
-
-_TAKES: dict[CommandName, str] = {
-    "move_joint": "POSE -> unit` or `POSE * real -> unit",
-    "move_linear": "POSE -> unit` or `POSE * real -> unit",
-    "move_axes": "AXES -> unit` or `AXES * real -> unit",
-    "move_circular": "POSE * POSE -> unit` or `POSE * POSE * real -> unit",
-    "move_external": "real -> unit` or `real * real -> unit",
-    "move_home": "unit -> unit",
-    "measure": "POSE -> POSE",
-    "tool": "unit -> unit",
-    "wait": "real -> unit",
-}
-"""Type of the function of each command; POSE and AXES are records of six reals."""
 
 
 def check_primitives(partition: Partition, config: CellConfig, d: Diagnostics) -> None:
@@ -71,7 +67,7 @@ class _Checker:
         program = self.partition.net.program
         self.reach = Reach(program)
         for t in self.partition.net.transitions:
-            self.reach.add_locals(*(e for _, e in _expressions(t)))
+            self.reach.add_locals(*(e for _, e in expressions_of(t)))
         for name, primitive in self.config.primitives.items():
             symbol = program.globals.get(name)
             if symbol is not None and isinstance(symbol.type, TFun):
@@ -94,7 +90,7 @@ class _Checker:
                 continue
             if "primitive" in block.lower():
                 self.unnamed[symbol.uid] = symbol
-            elif block in beside and _gives_back(body):
+            elif block in beside and gives_back(body):
                 self.idle.add(symbol.uid)
 
     # --- entries -----------------------------------------------------------------------------------
@@ -117,19 +113,19 @@ class _Checker:
                     if near
                     else "declare it in the net, or remove the entry",
                 )
-            elif not _fits(symbol.type, primitive):
-                takes = _taking(primitive)
+            elif not fits(symbol.type, primitive):
+                takes = taking(primitive)
                 self.d.error(
                     codes.PRIMITIVE_ENTRY,
                     f"`{name}` has type `{symbol.type}`, but a function for `{primitive.command}` has type "
                     f"`{takes}`",
                     at,
-                    notes=[text for word, text in _RECORDS.items() if word in takes],
-                    hint=_other_commands(symbol.type),
+                    notes=[text for word, text in RECORDS.items() if word in takes],
+                    hint=other_commands(symbol.type),
                 )
             elif (
-                "POSE" in _TAKES[primitive.command]
-                and _takes_any_pose(symbol.type)
+                "POSE" in TAKES[primitive.command]
+                and takes_any_pose(symbol.type)
                 and len(types := pose_types(self.partition.net)) > 1
             ):
                 listed = " and ".join(f"`{t}`" for t in types)
@@ -187,7 +183,7 @@ class _Checker:
         net = self.partition.net
         for t, index in zip(net.transitions, self.partition.transition_owner, strict=True):
             owner = self.partition.owners[index]
-            for part, e in _expressions(t):
+            for part, e in expressions_of(t):
                 if index and part == "code segment":
                     assert t.code is not None
                     self._code(t, owner, t.code)
@@ -353,7 +349,7 @@ class _Checker:
                 problem = "stands among the primitives and returns its argument, but [primitives] does not name it"
             elif self._acts(symbol):
                 continue
-            elif isinstance(symbol.type, TFun) and _carries_nothing(_result(symbol.type)):
+            elif isinstance(symbol.type, TFun) and carries_nothing(result_of(symbol.type)):
                 problem = "is no primitive, calls none, and gives no value"
             else:
                 continue
@@ -366,15 +362,15 @@ class _Checker:
                 hint=f"add `{symbol.name} = {{ command = ... }}` to [primitives] of {self.config.path.name}"
                 + (f" (there is an entry `{near}`)" if near else ""),
             )
-        for x in [*unused, *_unused(e)]:
+        for x in [*unused, *unused_in(e)]:
             self._unused_value(x, where)
 
     def _unused_value(self, e: core.Exp, where: str) -> None:
         """A value that nobody wants: whatever was called for it must have been a command."""
-        for x in _values(e):
+        for x in values_of(e):
             if (
                 isinstance(x, core.Apply)
-                and not _carries_nothing(x.type)
+                and not carries_nothing(x.type)
                 and not any(
                     s.uid in self.primitives or s.uid in self.unnamed or s.uid in self.idle
                     for s, _ in self.reach.everything(x).values()
@@ -393,170 +389,7 @@ class _Checker:
         return any(s.uid in self.primitives for s in self.reach.from_symbol(symbol))
 
 
-def _expressions(t: FlatTransition) -> Iterator[tuple[str, core.Exp]]:
-    """All expressions of a transition, with the part that each belongs to."""
-    for guard in t.guards:
-        yield "guard", guard
-    for arc in t.arcs:
-        if arc.inscription is not None:
-            yield "arc inscription", arc.inscription.value
-    if t.delay is not None:
-        yield "delay", t.delay
-    if t.code is not None:
-        yield "code segment", t.code.action
-
-
-def _unused(e: core.Exp) -> Iterator[core.Exp]:
-    """The expressions inside whose values nobody wants."""
-    for x in walk(e):
-        if isinstance(x, core.Sequence):
-            yield from x.items[:-1]
-        elif isinstance(x, core.While):
-            yield x.body
-        elif isinstance(x, core.Apply) and isinstance(x.function, core.Builtin):
-            if x.function.name in ("ignore", "General.ignore"):
-                yield x.argument
-        elif isinstance(x, core.Let):
-            used = {y.symbol.uid for y in walk(x) if isinstance(y, core.Var)}
-            for declaration in x.declarations:
-                if isinstance(declaration, core.ValBind):
-                    match declaration.pattern:
-                        case core.PWild():
-                            yield declaration.value
-                        case core.PVar(symbol) if symbol.uid not in used:
-                            yield declaration.value
-                        case _:
-                            pass
-
-
-def _values(e: core.Exp) -> Iterable[core.Exp]:
-    """The expressions one of which gives the value of `e`."""
-    match e:
-        case core.If(_, then, otherwise):
-            return [*_values(then), *_values(otherwise)]
-        case core.Case(_, rules):
-            return [x for rule in rules for x in _values(rule.body)]
-        case core.Let(body=body):
-            return _values(body)
-        case core.Sequence(items):
-            return _values(items[-1])
-        case core.RecordExp(fields):
-            return [x for _, value in fields for x in _values(value)]
-        case _:
-            return [e]
-
-
-def _gives_back(body: core.Exp) -> bool:
-    """Whether a function does nothing: it gives back what it gets."""
-    match body:
-        case core.Lambda((core.Rule(core.PVar(symbol), core.Var(given)),)):
-            return symbol == given
-        case _:
-            return False
-
-
-def _result(t: Type) -> Type:
-    while isinstance(t, TFun):
-        t = t.result
-    return t
-
-
-def _carries_nothing(t: Type) -> bool:
-    return isinstance(t, TRecord) and all(_carries_nothing(x) for _, x in t.fields)
-
-
-def _is_pose(t: Type) -> bool:
-    return isinstance(t, TVar) or is_pose(t)
-
-
-def _takes_any_pose(t: Type) -> bool:
-    """Whether a function that is told a pose takes anything in its place."""
-    match t:
-        case TFun(TRecord((("1", pose), ("2", _))), _) | TFun(pose, _):
-            return isinstance(pose, TVar)
-        case _:
-            return False
-
-
-_RECORDS = {
-    "POSE": "POSE is a record of six reals x y z rx ry rz",
-    "AXES": "AXES is a record of a real for each axis, a1 .. a6 or j1 .. j6 (of an arm with four axes to a4, with "
-    "seven to a7), in degrees, of axes that slide in mm",
-}
-
-
 _WHERE: dict[CommandName, str] = {
     "move_axes": "joint position",
     "move_external": "position of the axis",
 }
-
-
-def _taking(primitive: Primitive) -> str:
-    """The type of the function of an entry."""
-    text = _TAKES[primitive.command]
-    count = len(primitive.along)
-    if primitive.to is not None:
-        return "unit -> unit"
-    if not count and not primitive.via:
-        return text
-    places = {"move_axes": ["AXES"], "move_external": []}
-    poses = ["POSE"] * primitive.places
-    own = [*places.get(primitive.command, poses), *["real"] * count]
-    return f"{' * '.join(own)} -> unit` or `{' * '.join([*own, 'real'])} -> unit"
-
-
-def _parts(t: Type, primitive: Primitive) -> list[Type] | None:
-    """What a function takes: poses or axes, positions of external axes, and a speed; None: not so many."""
-    count = primitive.takes
-    is_tuple = isinstance(t, TRecord) and t.fields and t.fields[0][0] == "1"
-    parts = [x for _, x in t.fields] if isinstance(t, TRecord) and is_tuple else [t]
-    return parts if len(parts) in (count, count + 1) else None
-
-
-def moves_at_speed(t: Type, primitive: Primitive) -> bool:
-    """Whether a function takes a speed beside where to go: mm/s of the TCP, or percent of the speeds of the axes."""
-    if not isinstance(t, TFun) or primitive.command not in GOING or primitive.to is not None:
-        return False
-    parts = _parts(t.argument, primitive)
-    return parts is not None and len(parts) > primitive.takes and _goes(parts, primitive)
-
-
-def _goes(parts: list[Type], primitive: Primitive) -> bool:
-    """Whether these say where a move goes: places, then numbers."""
-    places, numbers = parts[: primitive.places], parts[primitive.places :]
-    match primitive.command:
-        case "move_axes":
-            fit = all(map(is_axes, places))
-        case "move_circular":
-            fit = all(map(is_pose, places))
-        case "move_linear" if primitive.via:
-            fit = all(map(is_pose, places))
-        case _:
-            fit = all(map(_is_pose, places))
-    return fit and all(x in (REAL, INT) for x in numbers)
-
-
-def _fits(t: Type, primitive: Primitive) -> bool:
-    if not isinstance(t, TFun):
-        return False
-    takes, gives = t.argument, t.result
-    match primitive.command:
-        case "move_external" if primitive.to is not None:
-            return (takes == UNIT or isinstance(takes, TVar)) and gives == UNIT
-        case "move_joint" | "move_linear" | "move_axes" | "move_circular" | "move_external":
-            parts = _parts(takes, primitive)
-            return parts is not None and _goes(parts, primitive) and gives == UNIT
-        case "measure":
-            return _is_pose(takes) and _is_pose(gives)
-        case "wait":
-            return takes in (REAL, INT, UNIT) and gives == UNIT
-        case "move_home" | "tool":
-            return (takes == UNIT or isinstance(takes, TVar)) and gives == UNIT
-
-
-def _other_commands(t: Type) -> str:
-    """Which commands a function of this type can be."""
-    known = [c for c in _TAKES if c != "move_external" and _fits(t, Primitive("", c))]
-    if not known:
-        return "change the function's declaration in the net"
-    return f"a function of this type can be {' or '.join(f'`{c}`' for c in known)}"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, lengths, pace_of, travel
+from pn2code.cell_file.axes import pace_of, travel
 from pn2code.cell_file.keys import Key, Section
+from pn2code.cell_file.poses import POSE, POSE_WORDS
+from pn2code.cell_file.things import OBJECT, lengths
 
 _SLIDE, _SWING, _CLAMP, _BELT = ("slide",), ("swing",), ("clamp",), ("belt",)
 DEVICE_PLACE = Section(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from pn2code.cell_file.arms import MOTION, ROBOT, TOOL
 from pn2code.cell_file.devices import DEVICE_PLACE
-from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, TOOL, ZONE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
     ACCEPT,
@@ -20,6 +20,9 @@ from pn2code.cell_file.logic import (
     SUPERVISOR,
     VALUE,
 )
+from pn2code.cell_file.poses import FRAME, POSE
+from pn2code.cell_file.scene import SCENE, ZONE
+from pn2code.cell_file.things import PART
 
 _PLACED = (
     Key(

@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     JsonOption,
     MaxSecondsOption,
     MaxStatesOption,
+    NetArgument,
     SetOption,
     code_of,
     parse_values,
@@ -45,9 +46,7 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 
 
 def check(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     geometry: Annotated[
         bool,
         typer.Option(

@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    NetArgument,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -32,8 +33,8 @@ from pn2code.cli.options import (
 from pn2code.conform.cell import Conformance, conform_cell
 from pn2code.conform.core import CoreReport
 from pn2code.conform.folder import Folder
-from pn2code.conform.robot import RobotReport
 from pn2code.conform.scheme import MOST_STATES
+from pn2code.conform.script_state import RobotReport
 from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 
@@ -54,9 +55,7 @@ MOST_NAMES = 8
 
 
 def conform(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     most: Annotated[
         int,
         typer.Option(

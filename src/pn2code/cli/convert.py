@@ -19,6 +19,7 @@ from pn2code.cli.options import (
     Format,
     FormatOption,
     InputOption,
+    NetArgument,
     SetOption,
     check_writable,
     parse_values,
@@ -50,9 +51,7 @@ _FORMATS = (".pnml", ".pml", ".promela", ".cpn", ".cpnt")
 
 
 def convert(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     output: Annotated[
         Path,
         typer.Option(

@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     Format,
     FormatOption,
     InputOption,
+    NetArgument,
     SeedOption,
     SetOption,
     parse_values,
@@ -64,9 +65,7 @@ _HTML = (".html", ".htm")
 
 
 def draw(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     output: Annotated[
         str,
         typer.Option(

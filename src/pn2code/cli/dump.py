@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import pn2code
-from pn2code.cli.options import Format, FormatOption, SetOption, parse_values, stop
+from pn2code.cli.options import Format, FormatOption, NetArgument, SetOption, parse_values, stop
 from pn2code.diagnostics import Diagnostics
 
 EPILOG = """Examples:
@@ -36,9 +36,7 @@ class Stage(StrEnum):
 
 
 def dump(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     stage: Annotated[
         Stage, typer.Option(help="The stage after which the net is printed.")
     ] = Stage.FLAT,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import Annotated
 
 import typer
 
@@ -19,6 +17,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    NetArgument,
     SeedOption,
     SetOption,
     parse_values,
@@ -34,9 +33,7 @@ EPILOG = """Examples:
 
 
 def enabled(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     as_json: JsonOption = False,
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     FormatOption,
     InputOption,
     MaxSecondsOption,
+    NetArgument,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -39,9 +40,7 @@ EPILOG = """Examples:
 
 
 def generate(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     output: Annotated[
         Path | None,
         typer.Option(*OUTPUT_FLAGS, help="The output folder (default: generated/<net>)."),

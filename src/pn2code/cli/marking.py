@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -19,6 +18,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    NetArgument,
     SeedOption,
     SetOption,
     parse_values,
@@ -36,9 +36,7 @@ EmptyOption = Annotated[bool, typer.Option("--empty", help="Print empty places a
 
 
 def marking(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     as_json: JsonOption = False,
     empty: EmptyOption = False,
     inputs: InputOption = None,

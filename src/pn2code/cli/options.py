@@ -56,6 +56,11 @@ FormatOption = Annotated[
     typer.Option("--format", help="The form in which diagnostics are printed.", show_default=True),
 ]
 
+NetArgument = Annotated[
+    Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
+]
+CellArgument = Annotated[Path, typer.Argument(help="A cell.toml, or its folder.")]
+
 
 def finite(number: float | None) -> float | None:
     """A number of the command line, checked: for Python `nan` and `inf` are numbers, and `nan` is in every range."""

@@ -18,6 +18,7 @@ from pn2code.base.progress_line import Line
 from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
+    CellArgument,
     Exit,
     Format,
     FormatOption,
@@ -61,7 +62,7 @@ class GoalChoice(StrEnum):
 
 
 def place(
-    cell: Annotated[Path, typer.Argument(help="A cell.toml, or its folder.")],
+    cell: CellArgument,
     free: Annotated[
         list[str],
         typer.Option(

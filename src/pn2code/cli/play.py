@@ -15,6 +15,7 @@ from pn2code.cli.options import (
     Format,
     FormatOption,
     InputOption,
+    NetArgument,
     SeedOption,
     SetOption,
     parse_values,
@@ -45,9 +46,7 @@ EPILOG = """Examples:
 
 
 def play(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     port: Annotated[
         int, port_option("The port of the page on this machine. 0 is any that is free.")
     ] = 0,

@@ -14,6 +14,7 @@ from pn2code.base.progress_line import Line, told
 from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
+    CellArgument,
     Format,
     FormatOption,
     InputOption,
@@ -40,7 +41,7 @@ EPILOG = """Examples:
 
 
 def reach(
-    cell: Annotated[Path, typer.Argument(help="A cell.toml, or its folder.")],
+    cell: CellArgument,
     layout: Annotated[
         str | None, typer.Option(metavar="NAME", help="The layout.  (default: the first)")
     ] = None,

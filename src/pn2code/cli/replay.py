@@ -21,6 +21,7 @@ from pn2code.cli.options import (
     FormatOption,
     IntBitsOption,
     JsonOption,
+    NetArgument,
     SetOption,
     parse_values,
 )
@@ -52,9 +53,7 @@ def replay(
     trace: Annotated[
         Path, typer.Argument(help="A trace (*.trace.jsonl), or a recording by CPN Tools.")
     ],
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     as_json: JsonOption = False,
     engine: EngineOption = Engine.REFERENCE,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

@@ -10,8 +10,8 @@ import typer
 from pn2code.base.frozen import frozen
 from pn2code.cli.options import Exit, Format, stop
 from pn2code.diagnostics import Diagnostics
-from pn2code.trace import replay as own
 from pn2code.trace.parties import Parties
+from pn2code.trace.replay_result import Notes
 from pn2code.verdict.opened import OpenNet
 
 
@@ -28,7 +28,7 @@ class Claims:
     parties: Parties
     check_digest: bool
     may_fail_outside: bool
-    notes: own.Notes | None = None
+    notes: Notes | None = None
 
 
 def claims(

@@ -26,6 +26,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    NetArgument,
     SetOption,
     check_kind,
     parse_values,
@@ -67,9 +68,7 @@ DEFAULT_STEPS = 1000
 
 
 def simulate(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     steps: Annotated[
         int | None,
         typer.Option(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,6 +17,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     MaxSecondsOption,
+    NetArgument,
     SetOption,
     parse_values,
 )
@@ -32,9 +32,7 @@ EPILOG = """Examples:
 
 
 def structure(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     as_json: JsonOption = False,
     everything: Annotated[bool, typer.Option("--all", help="Print long lists completely.")] = False,
     inputs: InputOption = None,

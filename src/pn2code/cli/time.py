@@ -13,6 +13,7 @@ from pn2code.base.progress_line import Line
 from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
+    CellArgument,
     Exit,
     Format,
     FormatOption,
@@ -46,7 +47,7 @@ EPILOG = """Examples:
 
 
 def time(
-    cell: Annotated[Path, typer.Argument(help="A cell.toml, or its folder.")],
+    cell: CellArgument,
     layout: Annotated[
         str | None, typer.Option(metavar="NAME", help="Only this layout.  (default: all)")
     ] = None,

@@ -26,6 +26,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    NetArgument,
     SetOption,
     check_kind,
     check_writable,
@@ -36,7 +37,9 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.subject import Subject
-from pn2code.cli.verify_screen import ending, full, screen
+from pn2code.cli.verify_closing import ending
+from pn2code.cli.verify_full import full
+from pn2code.cli.verify_screen import screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
@@ -94,9 +97,7 @@ _CODES = {"no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}
 
 
 def verify(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn, .cpnt or .pnml file, a cell.toml, or a folder.")
-    ],
+    net: NetArgument,
     max_states: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Stop after N markings are found.")
     ] = None,

@@ -22,6 +22,7 @@ from pn2code.conform.codes import PROBE_FAILED
 from pn2code.conform.folder import PROGRAM, Folder
 from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
+from pn2code.conform.script_state import RobotReport
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
 from pn2code.input_files import begin, folder_of
@@ -49,7 +50,7 @@ class Conformance:
 
     core: core.CoreReport
     supervisor: supervisor.Report | None
-    robots: tuple[robot.RobotReport, ...]
+    robots: tuple[RobotReport, ...]
     folder: Folder | None = None
 
     @property
@@ -152,7 +153,7 @@ def _programs(
     files: Sequence[OutputFile],
     d: Diagnostics,
     stage: Callable[[str], None],
-) -> tuple[supervisor.Report, tuple[robot.RobotReport, ...]] | None:
+) -> tuple[supervisor.Report, tuple[RobotReport, ...]] | None:
     stage("comparing the supervisor with the net ...")
     own = [f for f in files if f.path in PROGRAM]
     with programs.program(
@@ -231,7 +232,7 @@ class ProgramComparison:
                     report.complete, report.why = False, "deviation"
                 return report
 
-    def script(self, owner: Owner, text: str, d: Diagnostics) -> robot.RobotReport | None:
+    def script(self, owner: Owner, text: str, d: Diagnostics) -> RobotReport | None:
         """Compares the script of a robot or device; None after an error in it that was reported."""
         parsed = parse(SourceText(text, Origin(f"{owner.name}.tdl", 1, 1)), d)
         checked = check(parsed, d, self._config.frame_names) if parsed is not None else None
@@ -240,9 +241,7 @@ class ProgramComparison:
         partition, game = self._partition, self._game()
         difference = declared.compare(partition, self._config, owner.index, checked, game)
         if difference is not None:
-            return robot.RobotReport(
-                owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference
-            )
+            return RobotReport(owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference)
         return robot.explore(
             partition, self._config, owner.index, checked, game, most=self._most, say=self._say
         )

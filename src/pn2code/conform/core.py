@@ -25,7 +25,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.references import Held
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import Marking, binding_to_json, place_from_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.simulate import programs

@@ -12,35 +12,28 @@ it may go on between two of them.
 
 from __future__ import annotations
 
-import math
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping
-from dataclasses import astuple, replace
+from dataclasses import replace
 
-from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles, Script
+from pn2code.conform.same import is_nothing, is_same, listed
 from pn2code.conform.scheme import MOST_STATES, Scheme
+from pn2code.conform.script_state import Chosen, RobotReport, State, negative_zeros
 from pn2code.net.flat import ArcKind, BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
-from pn2code.semantics.game.enabling import GivenUpError
-from pn2code.semantics.game.marking import (
-    BindingElement,
-    Marking,
-    binding_to_json,
-    element_text,
-)
+from pn2code.semantics.game.errors import GivenUpError
+from pn2code.semantics.game.marking import BindingElement, Marking, binding_to_json, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
-from pn2code.semantics.values.data import Timed, is_negative_zero
+from pn2code.semantics.values.data import Timed
 from pn2code.tdl.check import CheckedProgram
-from pn2code.tdl.evaluate import ScriptPose
-from pn2code.tdl.interpret import Saved
 from pn2code.tdl.requests import (
     AwaitFile,
     Event,
@@ -52,84 +45,6 @@ from pn2code.tdl.requests import (
     Scalar,
     Sense,
 )
-
-
-@frozen
-class RobotReport:
-    """What was compared.
-
-    Args:
-        robot: its name.
-        states: markings of the net with states of the script.
-        marks: transitions that the script announced, each checked; `transitions` of `all_transitions` different ones.
-        commands: commands that were compared with calls of primitives.
-        complete: every state that can be reached was seen.
-        deviation: in words; None: there is none.
-        way: what happened before the deviation.
-        why: what the token game did not evaluate to its end; "": nothing.
-        idle: names of its transitions that the script announced in none of these states, in order of the net.
-    """
-
-    robot: str
-    states: int
-    marks: int
-    transitions: int
-    all_transitions: int
-    commands: int
-    complete: bool
-    deviation: str | None = None
-    way: tuple[str, ...] = ()
-    why: str = ""
-    idle: tuple[str, ...] = ()
-
-
-@frozen
-class Chosen:
-    """When the script chose the transition that it announces next: messages that come afterwards do not matter to it.
-
-    Args:
-        held: the files that held a message then; several where it is not certain when: a wait for no time may be the
-            first command of the next transition, or the delay of the last one.
-        is_over: it has chosen; else it may do so now.
-    """
-
-    held: tuple[frozenset[str], ...] = ()
-    is_over: bool = False
-
-    def with_view(self, view: frozenset[str], *, is_certain: bool) -> Chosen:
-        """After a request at which it may have chosen before, or `is_certain` has."""
-        if self.is_over:
-            return self
-        held = self.held if view in self.held else (*self.held, view)
-        return Chosen(held, is_certain)
-
-
-@frozen
-class _State:
-    """Args:
-    marking: of the closed net.
-    saved: the script.
-    request: what it has asked for, None at the start.
-    done: commands since the last mark.
-    said: what sensors were asked since then, and what they said.
-    until: model time at which a wait ends.
-    owed: model time that the script still has to wait before it goes on: the delay of the last transition.
-    looked: files that it has seen to be filled and not emptied since.
-    late: messages to it that have been put, and are not published yet.
-    """
-
-    marking: Marking
-    saved: Saved
-    request: Request | None
-    done: tuple[commands.Command, ...] = ()
-    said: tuple[tuple[str, Scalar], ...] = ()
-    until: float | None = None
-    owed: float = 0.0
-    looked: frozenset[str] = frozenset()
-    signs: object = None
-    """of the zeros in the marking and in the script's variables: equal ones can be told apart"""
-    late: frozenset[str] = frozenset()
-    chosen: Chosen = Chosen()
 
 
 class _Product:
@@ -175,8 +90,8 @@ class _Product:
 
     def run(self, say: Say) -> RobotReport:
         more = HowFar(say, f"comparing {self._name}.tdl", noun="states")
-        first = self._timeless(_State(self._game.marking, self._interpreter.save(), None))
-        parent: dict[_State, tuple[_State, str] | None] = {first: None}
+        first = self._timeless(State(self._game.marking, self._interpreter.save(), None))
+        parent: dict[State, tuple[State, str] | None] = {first: None}
         waiting = deque([first])
         deviation: str | None = None
         given_up = ""
@@ -210,7 +125,7 @@ class _Product:
             tuple(t.name for t in own if t.name not in self._marked),
         )
 
-    def _path(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:
+    def _path(self, parent: dict[State, tuple[State, str] | None], at: State) -> list[str]:
         path = []
         while (step := parent[at]) is not None:
             at, text = step
@@ -219,7 +134,7 @@ class _Product:
 
     # --- what can happen ---------------------------------------------------------------------------
 
-    def _following(self, state: _State) -> Iterator[tuple[str, _State]]:
+    def _following(self, state: State) -> Iterator[tuple[str, State]]:
         quiet = True
         for owner in self._partition.owners:
             if owner.index == self._owner:
@@ -245,20 +160,20 @@ class _Product:
             if later is not None:
                 yield f"time goes on by {later.marking.time - state.marking.time}", later
 
-    def _put_late(self, state: _State, after: Marking, writer: int) -> frozenset[str]:
+    def _put_late(self, state: State, after: Marking, writer: int) -> frozenset[str]:
         """What is not published yet after an occurrence: of several messages that it puts, none is at first."""
         own = [c for c in self._incoming if c.writer == writer]
         put = {c.name for c in own if after.places[c.place] and not state.marking.places[c.place]}
         is_alone = len(put) == 1 and state.late.isdisjoint(c.name for c in own)
         return state.late if is_alone else state.late | put
 
-    def _next_published(self, state: _State) -> Iterator[Channel]:
+    def _next_published(self, state: State) -> Iterator[Channel]:
         """Of each writer the message that it publishes next: data before flags, as the channels of a partition are."""
         late = [c for c in self._incoming if c.name in state.late]
         for writer in {c.writer: None for c in late}:
             yield next(c for c in late if c.writer == writer)
 
-    def _later(self, state: _State) -> _State | None:
+    def _later(self, state: State) -> State | None:
         """Time goes on to where something can happen."""
         now = state.marking.time
         times = [
@@ -272,15 +187,15 @@ class _Product:
             state, marking=replace(state.marking, time=time if self._net.real_time else int(time))
         )
 
-    def _timeless(self, state: _State) -> _State:
+    def _timeless(self, state: State) -> State:
         """The same state with times from its own on, where only those count."""
         if self._clock.is_relative:
             until = None if state.until is None else max(state.until - state.marking.time, 0)
             state = replace(state, marking=self._clock.relative(state.marking), until=until)
-        signs = self._scheme.nodes.signs(state.marking), _negative(state.saved)
+        signs = self._scheme.nodes.signs(state.marking), negative_zeros(state.saved)
         return replace(state, signs=signs)
 
-    def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
+    def _resumed(self, state: State) -> Iterator[tuple[str, State]]:
         """The script goes on, if it can."""
         match state.request:
             case Finished():
@@ -329,7 +244,7 @@ class _Product:
             return True
         return False
 
-    def _nothing_to_do(self, state: _State, why: str) -> None:
+    def _nothing_to_do(self, state: State, why: str) -> None:
         try:
             element = next(self._scheme.enabled(self._owner, self._published(state.marking)), None)
         except GivenUpError:
@@ -344,10 +259,10 @@ class _Product:
         # A command belongs to a transition, which is announced after it.
         if state.done:
             raise DeviationError(
-                f"{why}, but has commanded {_list(state.done)}, which the net does not call"
+                f"{why}, but has commanded {listed(state.done)}, which the net does not call"
             )
 
-    def _nothing_to_wait_for(self, state: _State, why: str) -> None:
+    def _nothing_to_wait_for(self, state: State, why: str) -> None:
         """A script that stops where it is to wait stops the cell, even if the message never comes.
 
         It waits where whatever could come next takes the same messages, and not all of them are there.
@@ -363,7 +278,7 @@ class _Product:
         if len(taken) == 1 and missing:
             raise DeviationError(f"{why}, where its page waits for {', '.join(sorted(missing))}")
 
-    def _said(self, state: _State, sensor: str) -> list[Scalar]:
+    def _said(self, state: State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
         found: dict[Scalar, None] = {}
         self._chosen = state.chosen
@@ -380,7 +295,7 @@ class _Product:
 
     # --- the script --------------------------------------------------------------------------------
 
-    def _go(self, state: _State, result: commands.Pose | Scalar | None) -> tuple[str, _State]:
+    def _go(self, state: State, result: commands.Pose | Scalar | None) -> tuple[str, State]:
         """Runs it to its next request. What is wrong raises `DeviationError`."""
         self._interpreter.restore(state.saved)
         self._marking = state.marking
@@ -404,7 +319,7 @@ class _Product:
         if isinstance(request, Execute | Sense) and not is_delay:
             view = frozenset(self._files.view)
             self._chosen = self._chosen.with_view(view, is_certain=until is None)
-        after = _State(
+        after = State(
             self._marking,
             self._interpreter.save(),
             request,
@@ -423,12 +338,12 @@ class _Product:
         wait = request.command if isinstance(request, Execute) else None
         if isinstance(wait, commands.Wait) and (self._owed or not wait.duration):
             left = self._owed - wait.duration
-            if left < 0 and not _is_nothing(left, self._owed):
+            if left < 0 and not is_nothing(left, self._owed):
                 raise DeviationError(
                     f"line {self._interpreter.line} waits {wait.duration:g} s; "
                     f"according to the net {self._owed:g} s are left"
                 )
-            self._owed = 0.0 if _is_nothing(left, self._owed) else left
+            self._owed = 0.0 if is_nothing(left, self._owed) else left
             return self._marking.time + wait.duration
         self._must_not_owe(f"the script goes on in line {self._interpreter.line}")
         return None
@@ -457,7 +372,7 @@ class _Product:
         if t is None or self._partition.transition_owner[t.index] != self._owner:
             raise DeviationError(f"{where}, which is no transition of {self._name}")
         for marking, occurred in self._occurrences(t, where):
-            if _is_same(binding_to_json(occurred), event.binding):
+            if is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
                 self._chosen = Chosen()
@@ -472,10 +387,8 @@ class _Product:
     def _why_not(self, t: FlatTransition, event: Marked) -> str:
         """Why a transition must not be announced: the script may have chosen it before its messages were there."""
         now = self._scheme.enabled(self._owner, self._published(self._marking))
-        if any(
-            e.transition == t.index and _is_same(binding_to_json(e), event.binding) for e in now
-        ):
-            did = f"commanded {_list(tuple(self._done))}" if self._done else "asked its sensors"
+        if any(e.transition == t.index and is_same(binding_to_json(e), event.binding) for e in now):
+            did = f"commanded {listed(tuple(self._done))}" if self._done else "asked its sensors"
             return f"was not enabled according to the net when the script {did}"
         return "is not enabled according to the net"
 
@@ -522,7 +435,7 @@ class _Product:
         called = tuple(c for c in called if c != commands.Wait(0.0))
         if done != called:
             raise DeviationError(
-                f"{where}: the script has commanded {_list(done)}, the net calls {_list(called)}"
+                f"{where}: the script has commanded {listed(done)}, the net calls {listed(called)}"
             )
 
     def _published(self, marking: Marking) -> Marking:
@@ -557,39 +470,11 @@ class _Product:
 
     def _compare_files(self) -> None:
         expected = self._view(self._marking)
-        if not _is_same(self._files.view, expected):
+        if not is_same(self._files.view, expected):
             raise DeviationError(
                 f"after line {self._interpreter.line} the files hold {self._files.view}, "
                 f"but {expected} according to the net"
             )
-
-
-def _is_same(a: object, b: object) -> bool:
-    """Whether two values are equal, and of one type: 1 is not 1.0, and neither is true."""
-    if isinstance(a, Mapping) and isinstance(b, Mapping):
-        return a.keys() == b.keys() and all(_is_same(a[k], b[k]) for k in a)
-    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
-        return len(a) == len(b) and all(map(_is_same, a, b))
-    return type(a) is type(b) and a == b
-
-
-def _is_nothing(seconds: float, among: float) -> bool:
-    """Whether what is left of a time is rounding alone."""
-    return math.isclose(seconds, 0.0, abs_tol=1e-9 * max(1.0, among))
-
-
-def _negative(saved: Saved) -> frozenset[str]:
-    """The variables of a script that hold a zero with a sign, or a pose with one."""
-    zeros = ((name, v) for name, v in saved.values if isinstance(v, float | ScriptPose))
-    return frozenset(
-        name
-        for name, v in zeros
-        if any(map(is_negative_zero, astuple(v) if isinstance(v, ScriptPose) else (v,)))
-    )
-
-
-def _list(found: tuple[commands.Command | Unknown, ...]) -> str:
-    return ", ".join(map(str, found)) or "nothing"
 
 
 def explore(

@@ -18,7 +18,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.evaluation.references import Held
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError

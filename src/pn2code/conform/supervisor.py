@@ -23,7 +23,7 @@ from pn2code.conform.messages import scalars
 from pn2code.conform.observations import Observation, ObservedChange, look, observed
 from pn2code.conform.probe import SESSION, Answer, Probe
 from pn2code.conform.scheme import MOST_STATES, Scheme
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import Marking, place_from_json, place_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_json import JsonError

@@ -22,133 +22,33 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from math import gcd
 from typing import TYPE_CHECKING
 
-from pn2code.base.frozen import frozen
 from pn2code.base.late import Late
+from pn2code.contest.counted import Counted
 from pn2code.contest.reduction.net import Affine, Goal, Net
 from pn2code.contest.reduction.transitions import dead_transitions
+from pn2code.contest.sums import MOST_ARCS, Sums
 from pn2code.contest.tables import Tables
+from pn2code.contest.units import units_of
 
 if TYPE_CHECKING:
     import numpy as np
-    from scipy import optimize, sparse
+    from scipy import sparse
     from scipy.sparse import csgraph
 else:
     np = Late("numpy")
-    optimize = Late("scipy.optimize")
     sparse = Late("scipy.sparse")
     csgraph = Late("scipy.sparse.csgraph")
 
-MOST_ARCS = 200_000
-"""No linear programs about larger nets."""
+
 _MOST_FACTOR = 1_000_000_000
 """What the engine reads."""
 _CANDIDATES = 8
 _REDUCING = 0.6
 """Of the time; what is left is for units."""
-
-
-@frozen
-class Counted:
-    """A net with the same numbers, if they are counted as it says.
-
-    Args:
-        tables: the net; transitions that change nothing are there to be counted.
-        leaves: place -> places of the net before for which it stands.
-        kept: place -> its number in the net before.
-        total: the tokens in a marking; of places with several leaves, the most that they can be.
-        sums: the tokens of the places that are gone, likewise.
-        units: sets of places of which one at most is marked, with one token.
-        level: place -> the place that diagrams have for it, and its value there; 0: a place of its own.
-        drawn: the net that diagrams have: a unit is one place, from which an arc takes a value.
-    """
-
-    tables: Tables
-    leaves: tuple[int, ...]
-    kept: tuple[int, ...]
-    total: Affine
-    sums: tuple[Affine, ...]
-    units: tuple[tuple[int, ...], ...]
-    level: Mapping[int, tuple[int, int]]
-    drawn: Tables
-
-    @staticmethod
-    def of(
-        tables: Tables,
-        leaves: tuple[int, ...],
-        kept: tuple[int, ...],
-        total: Affine,
-        sums: tuple[Affine, ...],
-        units: tuple[tuple[int, ...], ...] = (),
-    ) -> Counted:
-        """As above."""
-        level = {p: (i, v) for i, unit in enumerate(units) for v, p in enumerate(unit, 1)}
-        alone = [p for p in range(len(leaves)) if p not in level]
-        level |= {p: (i, 0) for i, p in enumerate(alone, len(units))}
-        drawn = _drawn(tables, level, len(units) + len(alone))
-        return Counted(tables, leaves, kept, total, sums, units, level, drawn)
-
-    def without_units(self) -> Counted:
-        """The same with a place of its own for each place."""
-        return Counted.of(self.tables, self.leaves, self.kept, self.total, self.sums)
-
-    def text(self, order: Sequence[int]) -> str:
-        """The net of diagrams with the sums as questions: first that of the marking, then those of places.
-
-        Args:
-            order: of the places of `drawn`.
-        """
-        asked = [
-            f"{i} bound {self._terms(s)} {-s.constant}"
-            for i, s in enumerate((self.total, *self.sums))
-        ]
-        text = self.drawn.text(asked, order)
-        leaves = [1] * len(self.drawn.initial)
-        for p, (at, value) in self.level.items():
-            leaves[at] = 1 if value else self.leaves[p]
-        text += f"leaves {' '.join(map(str, leaves))}\nexact {len(self.units)}\n"
-        for i, unit in enumerate(self.units):
-            text += f"{i} {len(unit)} {' '.join(str(self.leaves[p]) for p in unit)}\n"
-        return text
-
-    def _terms(self, sum_: Affine) -> str:
-        """A term for each place, of a unit for each of its values in turn, if any of them counts."""
-        used = {self.level[p][0] for p in sum_.factors}
-        terms = []
-        for i, unit in enumerate(self.units):
-            if i in used:
-                terms += [f"{i} {sum_.factors.get(p, 0)}" for p in unit]
-        for p, n in sum_.factors.items():
-            at, value = self.level[p]
-            terms += [] if value else [f"{at} {n}"]
-        return " ".join(["sum", str(len(terms)), *terms])
-
-
-def _drawn(tables: Tables, level: Mapping[int, tuple[int, int]], places: int) -> Tables:
-    initial = [0] * places
-    for p, tokens in enumerate(tables.initial):
-        at, value = level[p]
-        initial[at] += value * tokens if value else tokens
-    found = []
-    for pre, post in zip(tables.pre, tables.post, strict=True):
-        taken, put = _valued(pre, level), _valued(post, level)
-        if taken is not None and put is not None:
-            found.append((taken, put))
-    return Tables(tuple(initial), tuple(a for a, _ in found), tuple(b for _, b in found), {}, {})
-
-
-def _valued(arcs: Mapping[int, int], level: Mapping[int, tuple[int, int]]) -> dict[int, int] | None:
-    """Arcs in values; None: the transition is dead, since it needs, or makes, two tokens in a unit."""
-    found: dict[int, int] = {}
-    for p, n in arcs.items():
-        at, value = level[p]
-        if value and (n > 1 or at in found):
-            return None
-        found[at] = value or n
-    return found
 
 
 def smaller(tables: Tables, until: float) -> Counted | None:
@@ -271,7 +171,7 @@ class _Counting:
         rows = {frozenset(net.effect(t).items()) for t in net.pre}
         if not rows:
             return False
-        programs = _Sums(
+        programs = Sums(
             places, [{column[p]: n for p, n in row} for row in rows], self.until_reduced
         )
         removed = False
@@ -433,149 +333,3 @@ def _sum(parts: Iterable[tuple[Affine, int]], constant: int) -> Affine:
         for p, m in part.factors.items():
             factors[p] += n * m
     return Affine(constant, {p: n for p, n in factors.items() if n})
-
-
-class _Sums:
-    """Linear programs: is a place a sum of others, with factors that are not negative?
-
-    Args:
-        places: columns.
-        rows: what transitions change.
-        until: when to stop, on the monotonic clock.
-    """
-
-    def __init__(self, places: Sequence[int], rows: Sequence[dict[int, int]], until: float) -> None:
-        self.until = until
-        at = [(i, p) for i, row in enumerate(rows) for p in row]
-        changes = np.array([n for row in rows for n in row.values()], dtype=float)
-        shape = (len(rows), len(places))
-        self.changes = sparse.csc_array((changes, tuple(np.array(at).T)), shape=shape)
-        self.is_there = np.full(len(places), True)
-
-    def without(self, column: int) -> None:
-        """A place is gone."""
-        self.is_there[column] = False
-
-    def of(
-        self, column: int, rests: Sequence[tuple[dict[int, int], int]], marking: np.ndarray
-    ) -> dict[int, int] | None:
-        """Factors by column, rounded; None: there are none, or the time is over.
-
-        Args:
-            column: of the place.
-            rests: of the transitions that need it: what else they need, and how much of the place.
-            marking: the initial one, by column.
-        """
-        left = self.until - time.monotonic()
-        if left <= 0:
-            return None
-        upper = np.where(self.is_there, np.inf, 0.0)
-        lower = np.zeros(len(upper)) if rests else -upper
-        upper[column] = lower[column] = 0.0
-        wanted = self.changes[:, [column]].toarray().ravel()
-        needs, least = None, None
-        if rests:
-            needs = np.tile(marking, (len(rests), 1))
-            for i, (rest, _) in enumerate(rests):
-                for q, n in rest.items():
-                    needs[i, q] -= n
-            least = marking[column] - np.array([n for _, n in rests], dtype=float)
-        cost = np.ones(len(upper)) if rests else np.zeros(len(upper))
-        found = optimize.linprog(
-            cost,
-            A_ub=needs,
-            b_ub=least,
-            A_eq=self.changes,
-            b_eq=wanted,
-            bounds=np.column_stack((lower, upper)),
-            method="highs",
-            options={"time_limit": left},
-        )
-        if found.x is None or found.status:
-            return None
-        rounded = np.rint(found.x).astype(int)
-        return {i: int(rounded[i]) for i in np.flatnonzero(rounded).tolist()}
-
-
-def units_of(tables: Tables, until: float) -> tuple[tuple[int, ...], ...]:
-    """Disjoint sets of places of which invariants say that one at most is marked, with one token; large ones first."""
-    places = len(tables.initial)
-    arcs = sum(map(len, tables.pre)) + sum(map(len, tables.post))
-    found: list[set[int]] = []
-    open_ = {p for p in range(places) if tables.initial[p] <= 1}
-    if places and arcs <= MOST_ARCS:
-        rows = {
-            frozenset((p, post.get(p, 0) - pre.get(p, 0)) for p in {*pre, *post})
-            for pre, post in zip(tables.pre, tables.post, strict=True)
-        }
-        changes = [{p: n for p, n in row if n} for row in rows]
-        programs = _Invariants(tables.initial, [row for row in changes if row], until)
-        is_common = True  # a program for all places that are open; then for one after the other
-        while open_ and time.monotonic() < until:
-            wanted = open_ if is_common else {min(open_)}
-            unit = programs.with_most(wanted)
-            if unit is not None and unit & wanted:
-                found.append(unit)
-                open_ -= unit
-            elif is_common:
-                is_common = False
-            else:
-                open_ -= wanted
-    units: list[tuple[int, ...]] = []
-    while found:
-        largest = max(found, key=len)
-        if len(largest) > 1:
-            units.append(tuple(sorted(largest)))
-        found = [rest for unit in found if (rest := unit - largest)]
-    return tuple(units)
-
-
-class _Invariants:
-    """Sets of places that hold one token together, by linear programs.
-
-    Args:
-        initial: the initial marking.
-        changes: what transitions change.
-        until: when to stop, on the monotonic clock.
-    """
-
-    def __init__(
-        self, initial: Sequence[int], changes: Sequence[dict[int, int]], until: float
-    ) -> None:
-        self.until = until
-        self.changes = changes
-        self.initial = np.array(initial, dtype=float)
-        at = np.array([(i, p) for i, row in enumerate(changes) for p in row]).reshape(-1, 2)
-        numbers = np.array([n for row in changes for n in row.values()], dtype=float)
-        shape = (len(changes) + 1, len(initial))
-        marked = sparse.csr_array(self.initial.reshape(1, -1))
-        self.equal = sparse.vstack(
-            [sparse.csr_array((numbers, tuple(at.T)), shape=(shape[0] - 1, shape[1])), marked]
-        ).tocsc()
-
-    def with_most(self, wanted: set[int]) -> set[int] | None:
-        """One with as many of some places as possible; None: there is none, or the time is over."""
-        left = self.until - time.monotonic()
-        if left <= 0:
-            return None
-        cost = np.array([-1.0 if p in wanted else 0.0 for p in range(len(self.initial))])
-        right = np.zeros(self.equal.shape[0])
-        right[-1] = 1.0
-        found = optimize.linprog(
-            cost,
-            A_eq=self.equal,
-            b_eq=right,
-            bounds=(0, None),  # the corners are invariants that contain no other one
-            method="highs",
-            options={"time_limit": left},
-        )
-        if found.x is None or found.status:
-            return None
-        unit = set(np.flatnonzero(np.rint(found.x)).tolist())
-        return unit if self._is_one(unit) else None
-
-    def _is_one(self, unit: set[int]) -> bool:
-        """In integers: they hold one token at first, and no transition changes how many they hold."""
-        return sum(int(self.initial[p]) for p in unit) == 1 and not any(
-            sum(n for p, n in row.items() if p in unit) for row in self.changes
-        )

@@ -18,7 +18,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 
 from pn2code.base.frozen import frozen
-from pn2code.contest.counting import Counted, smaller
+from pn2code.contest.counted import Counted
+from pn2code.contest.counting import smaller
 from pn2code.contest.engine import Task
 from pn2code.contest.tables import Tables
 from pn2code.symbolic.coupling import improved

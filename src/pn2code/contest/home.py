@@ -49,7 +49,6 @@ MOST_TRANSITIONS = 10_000
 LONGEST_S = 20.0
 _LARGEST_PART = 0.4
 """Of the time that is left; and so many seconds at most."""
-_SMALL = 1e-6
 _WEIGHTS_S = 2.0
 _EACH_S = 2.0
 """For a question about drained markings."""

@@ -23,7 +23,7 @@ from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, To
 from pn2code.contest.paths import Followed, next_value, path_of
 from pn2code.contest.tables import Tables
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit

@@ -27,7 +27,7 @@ from pn2code.contest.rounds import Rounds
 from pn2code.contest.structural import Question, Structural, question, terms
 from pn2code.contest.tables import Tables
 from pn2code.contest.temporal import Reach, Temporal, Wanted, Whole
-from pn2code.properties.ltl import TooLargeError
+from pn2code.properties.ltl_expansion import TooLargeError
 from pn2code.semantics.game.token_game import Game
 
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)

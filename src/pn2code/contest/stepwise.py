@@ -15,7 +15,7 @@ from pn2code.contest.reduction.net import Goal
 from pn2code.contest.reduction.reduce import reduced_for
 from pn2code.contest.rewriting import has_next, leaves
 from pn2code.contest.tables import Tables
-from pn2code.properties import ltl
+from pn2code.properties import ltl_expansion
 
 _GAIN = 0.9
 """A net that keeps more of its transitions and places than that is not worth a graph of its own."""
@@ -45,7 +45,7 @@ def smaller_for(
             return None
         words = {f: conditions.text(reduced.condition(c)) for f, c in asked.items()}
         return made, question(tables, kind, formula, words)
-    except (TooLargeError, FormulaError, ltl.TooLargeError):
+    except (TooLargeError, FormulaError, ltl_expansion.TooLargeError):
         return None
 
 

@@ -19,7 +19,7 @@ from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.effects import Effects, outside
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game

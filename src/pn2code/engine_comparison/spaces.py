@@ -19,7 +19,7 @@ from pn2code.engine_comparison.finding import NOTHING, Finding, State, differs
 from pn2code.net import front
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.effects import Effects, outside
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.verify.exploring.explore import explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Exploration

@@ -12,7 +12,7 @@ from pn2code.engine_comparison.graphs import engine_arcs, engine_nodes, our_arcs
 from pn2code.net import front
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.effects import Effects, outside
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game
 

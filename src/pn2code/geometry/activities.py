@@ -22,6 +22,7 @@ from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.prisms import PartEvent, Prism, near, surface, swept, whole
 from pn2code.geometry.shown import Shown
+from pn2code.robot.active_motion import turned_by
 from pn2code.robot.belts import line_of, told_to_run, until_stop
 from pn2code.robot.clamps import (
     Held,
@@ -34,10 +35,10 @@ from pn2code.robot.clamps import (
     taken_along,
 )
 from pn2code.robot.commands import CHANGES, Command, Handling, ToolAction
-from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
-from pn2code.robot.parts import Part, PartChange, PartFault, Parts
+from pn2code.robot.part import Part, PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 

@@ -17,7 +17,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.geometry.tracks import Knots, Link, Track
 from pn2code.robot.backend import Clearance
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags, Numbers
 
 Outcome = Literal["clear", "touch", "open"]

@@ -33,11 +33,11 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.geometry.zone_speeds import slow_enough
+from pn2code.robot.active_motion import turned_by
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Clearance
 from pn2code.robot.clamps import holding, taken_along
-from pn2code.robot.executor import turned_by
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.trajectories import LinearTrajectory

@@ -11,7 +11,8 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Stand
-from pn2code.robot.parts import Part, Parts
+from pn2code.robot.part import Part
+from pn2code.robot.parts import Parts
 
 _DIGITS = 6
 

@@ -29,7 +29,7 @@ from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot.commands import Command
 from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.enabling import running as evaluating
+from pn2code.semantics.game.errors import running as evaluating
 from pn2code.semantics.game.marking import Binding
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json

@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import MotionKind
 from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
-from pn2code.robot.executor import MotionKind, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.trajectories import Still, Trajectory

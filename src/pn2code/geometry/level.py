@@ -14,7 +14,7 @@ from pn2code.geometry.answers import Verdict
 from pn2code.geometry.contents import Load
 from pn2code.geometry.legs import Leg
 from pn2code.robot.along import AlongTrajectory
-from pn2code.robot.parts import carried_to
+from pn2code.robot.part import carried_to
 from pn2code.robot.riders import MOST_TILT, leaning, tilt
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Trajectory

@@ -20,7 +20,7 @@ from dataclasses import replace
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.contents import Contents
 from pn2code.robot.backend import Clearance
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 
 _OWN = re.compile(r"(?<=\.)(\d+)(\.held_by_\w+|\.standing|\.on_[\w@]+)")
 _OWN_TOOL = re.compile(r"\.tool_(?:held_by_\w+|standing)")

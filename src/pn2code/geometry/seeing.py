@@ -25,7 +25,7 @@ from pn2code.geometry.in_zones import InZones
 from pn2code.geometry.legs import Leg, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, matrix_of
 
 Answers = frozenset[bool]
@@ -223,7 +223,7 @@ class Seeing:
 def _open(t: FlatTransition, by_variable: dict[str, str]) -> Iterator[tuple[str, str, bool]]:
     """The variables of a transition that a sensor decides which sees the scene: with it, and whether it is asked first.
 
-    As `robot_scripts.steps` makes scripts.
+    As `robot_scripts.code_segment` makes scripts.
     """
     tried = [s.symbol for s in t.plan if isinstance(s, BindAll | BindRandom)]
     sensed = [s for s in tried if s.name in by_variable]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 
 
 class Shown:

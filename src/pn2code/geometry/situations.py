@@ -27,7 +27,7 @@ from pn2code.geometry.legs import Leg, Stand
 from pn2code.geometry.part_names import like
 from pn2code.geometry.prisms import PartEvent
 from pn2code.geometry.seeing import Scene, Seeing
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 
 Side = tuple[int, int, int]
 """What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands).

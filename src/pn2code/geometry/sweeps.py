@@ -28,7 +28,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags
 
 RESOLUTION = 2e-4

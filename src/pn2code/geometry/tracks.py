@@ -20,10 +20,10 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
+from pn2code.robot.active_motion import turned_by
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.executor import turned_by
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Still

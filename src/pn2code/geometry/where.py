@@ -10,7 +10,7 @@ import numpy as np
 from pn2code.geometry.legs import Stand
 from pn2code.geometry.words import numbers, position
 from pn2code.robot.external import ExternalAxis
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, pose_of
 

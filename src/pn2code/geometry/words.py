@@ -22,7 +22,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.verify.answers.reasons import clause
 
 _OPEN = {

@@ -20,7 +20,7 @@ from pn2code.geometry.legs import Leg
 from pn2code.geometry.situations import ON_PLATE, Side, Situation, Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import reason
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 
 Explore = Callable[[Partition], CellGraph | None]
 Sides = tuple[Side, Side]

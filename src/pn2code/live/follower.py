@@ -27,7 +27,8 @@ from pn2code.net.flat import FlatTransition
 from pn2code.semantics.game.marking import BindingElement, Marking, binding_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import JsonError, from_json
-from pn2code.trace.replay import ReplayResult, replay_lines
+from pn2code.trace.replay import replay_lines
+from pn2code.trace.replay_result import ReplayResult
 
 PATIENCE_S = 2.0
 """A line that is not possible waits so long for others that come before it."""

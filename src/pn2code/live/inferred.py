@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game, GameError
 

@@ -26,7 +26,8 @@ from pn2code.run.record import APART
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
 from pn2code.trace.merge import Merger
-from pn2code.trace.replay import ReplayResult, replay_lines
+from pn2code.trace.replay import replay_lines
+from pn2code.trace.replay_result import ReplayResult
 
 Json = dict[str, Any]
 

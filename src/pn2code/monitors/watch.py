@@ -28,7 +28,7 @@ from pn2code.monitors.statistics import Number, Statistics, Untimed
 from pn2code.monitors.statistics import Timed as TimedStatistics
 from pn2code.net.flat import FlatNet, PlaceInstance
 from pn2code.semantics.evaluation.files import FileProblem, Files
-from pn2code.semantics.game.enabling import GameError, running
+from pn2code.semantics.game.errors import GameError, running
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.game.token_game import Game

@@ -5,28 +5,23 @@ All independent errors are reported; elements that depend on something broken ar
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.how_far import counted
-from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
+from pn2code.diagnostics import Diagnostics, Note, SourceText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.computing import Compute
 from pn2code.ml.core.terms import Exp, Lit
-from pn2code.ml.core.types import INT, Type, list_of, timed_of
-from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
-from pn2code.ml.parsing.parser import declared_names, odd_declaration
-from pn2code.ml.parsing.plain_text import plain_names
+from pn2code.ml.core.types import INT
+from pn2code.ml.elaborate import Elaborator, is_layered
+from pn2code.ml.parsing.parser import odd_declaration
 from pn2code.net import (
     engine_guards,
-    infix_names,
     initial_effects,
     instance_numbers,
-    reserved_words,
     space_names,
 )
 from pn2code.net.binding import Parts, Planner
@@ -34,39 +29,34 @@ from pn2code.net.codes import (
     ARC_AS,
     ARC_EMPTY,
     ARC_IGNORED,
-    DECLARATION_EMPTY,
     DECLARATION_INSIDE,
-    DECLARATION_UNREAD,
     NEIGHBOUR_WRONG,
     PLACE_COLSET,
-    UNSUPPORTED_CHANNEL,
-    UNSUPPORTED_DECLARATION,
 )
+from pn2code.net.declare import Declaring, declared_in
 from pn2code.net.engine_binding import PlaceNode
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
+from pn2code.net.forms import (
+    ARC_TIMED,
+    UNTIMED,
+    form_type,
+    is_unit,
+    typed_marking,
+    typed_text,
+    unit_number,
+)
 from pn2code.net.linked import Arc, Net, Page, Place, Transition
 from pn2code.net.terms import TermReader
 from pn2code.net.typed import TypedArc, TypedNet, TypedPage, TypedPlace, TypedTransition
 from pn2code.net.uses import NetVariables
-from pn2code.reading.codes import DUPLICATE_ID
 from pn2code.reading.document import (
     RawColset,
-    RawDeclaration,
-    RawGlobref,
-    RawMl,
-    RawOther,
-    RawUse,
-    RawVar,
 )
 
 NORMAL_PRIORITY = 1000
 """Priority of a transition without one."""
 _MOST_NEIGHBOURS = 6
 _STANDARD = ("UNIT", "BOOL", "INT", "INTINF", "TIME", "REAL", "STRING")
-_NUMBER = re.compile(r" *[0-9]+ *")
-_UNTIMED = (Form.TOKEN, Form.MULTISET)
-_INITIAL_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_MULTISET, Form.TIMED_TOKEN)
-_ARC_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_TOKEN, Form.TIMED_MULTISET)
 
 
 def check(
@@ -116,126 +106,22 @@ class _Checker:
             compute=compute,
         )
         self.is_pnml = net.document.tool == "PNML"
-        self.broken: set[str] = set()
         self.tests: list[Exp] = []  # of arcs `x as pattern` of the present transition
         declared = {
             c.name
             for c in net.declarations
             if isinstance(c, RawColset) and {"all", "'all"} & set(c.declare)
         }
-        self.elaborator.announce(lambda: _declared(net))
-        self.declare_all(net.declarations)
+        self.elaborator.announce(lambda: declared_in(net))
+        declaring = Declaring(self.elaborator, d, self.is_pnml)
+        declaring.declare_all(net.declarations)
+        self.broken = declaring.broken
         for text in _texts(net):
             self.elaborator.with_library(text)
         self.program = self.elaborator.program()
         self.variables = NetVariables(self.program.variables)
         self.terms = TermReader(self.program, self.variables, d)
         self.planner = Planner(self.variables, self.terms, frozenset(declared), d)
-
-    def declare_all(self, declarations: Sequence[RawDeclaration]) -> None:
-        """In order. Of two declarations of one id CPN Tools forgets the first when it comes to the second."""
-        ids = Counter(declaration.id for declaration in declarations)
-        forget: dict[str, list[Callable[[], None]]] = {}
-        first: dict[str, RawDeclaration] = {}
-        for declaration in declarations:
-            identity = declaration.id
-            if not identity or ids[identity] == 1:
-                self.declare(declaration)
-                continue
-            for undo in forget.pop(identity, ()):
-                self.d.warning(
-                    DUPLICATE_ID,
-                    f"two declarations have the id `{identity}`: CPN Tools forgets the first, and so does pn2code",
-                    declaration.origin,
-                    notes=[Note("this one is forgotten", first[identity].origin)],
-                    hint="give one of them another id",
-                )
-                undo()
-            first[identity] = declaration
-            with self.elaborator.noting(forget.setdefault(identity, [])):
-                self.declare(declaration)
-
-    def declare(self, declaration: RawDeclaration) -> None:
-        """Hand one declaration to the elaborator."""
-        e = self.elaborator
-        if not self.is_pnml:
-            reserved_words.refuse_names(declaration, self.d)
-        match declaration:
-            case RawColset(kind="") | RawColset(name=""):
-                self.broken.add(declaration.name)  # reported when the file was read
-                e.unreadable((), (declaration.name,))
-            case RawVar(type=""):
-                e.unreadable(declaration.names, ())
-            case RawColset():
-                spec = ColsetSpec(
-                    name=declaration.name,
-                    kind=declaration.kind,
-                    ids=declaration.ids,
-                    fields=declaration.fields,
-                    texts=declaration.texts,
-                    timed=declaration.timed,
-                    by_predicate=declaration.by_predicate,
-                    declare=declaration.declare,
-                    origin=declaration.origin,
-                )
-                if not self.is_pnml:
-                    infix_names.refuse(spec.kind, spec.name, e.infix, spec.origin, self.d)
-                if e.colset(spec) is None:
-                    self.broken.add(declaration.name)
-                else:
-                    self.broken.discard(declaration.name)
-            case RawVar():
-                e.variables(declaration.names, declaration.type, declaration.origin)
-            case RawMl() if self.is_pnml:
-                e.declarations(declaration.text)
-            case RawMl():
-                before = e.infix
-                errors = len(self.d.errors)
-                e.declarations(declaration.text, reserved_words.refuse)
-                if len(self.d.errors) > errors:
-                    self.broken.update(plain_names(declaration.text.text)[0])
-                infix_names.warn(e.infix - before, declaration.origin, self.d)
-                if reserved_words.says_nothing(declaration.text):
-                    self.d.warning(
-                        DECLARATION_EMPTY,
-                        "a declaration is empty: CPN Tools refuses it (Not a declaration)",
-                        declaration.origin,
-                        hint="remove it, or put the comment before another declaration",
-                    )
-            case RawGlobref():
-                e.globref(declaration.name, declaration.text)
-            case RawUse():
-                e.use(declaration.text)
-            case RawOther() if declaration.tag == "globref":
-                self.d.warning(
-                    DECLARATION_EMPTY,
-                    f"reference `{declaration.text.text}` has no value and is not declared",
-                    declaration.origin,
-                    hint="give it a value, or remove the declaration",
-                )
-            case RawOther() if declaration.tag == "errordecl":
-                shown = " ".join(declaration.text.text.split())[:60]
-                self.d.error(
-                    DECLARATION_UNREAD,
-                    f"CPN Tools could not read this declaration and kept its text: `{shown}`",
-                    declaration.origin,
-                    hint="enter it again in the syntax of the present CPN Tools, or remove it",
-                )
-            case RawOther() if declaration.tag == "channel":
-                self.d.warning(
-                    UNSUPPORTED_CHANNEL,
-                    f"synchronous channels are not supported: channel `{declaration.text.text}` has no effect",
-                    declaration.origin,
-                    hint="use a place between the transitions, or merge them",
-                )
-            case RawOther():
-                shown = " ".join(declaration.text.text.split())[:60]
-                self.d.error(
-                    UNSUPPORTED_DECLARATION,
-                    f"a declaration of kind `{declaration.tag}` is not supported: `{shown}`",
-                    declaration.origin,
-                    hint="write it as a colour set, variable, reference or CPN ML declaration",
-                )
 
     def typed(self) -> TypedNet:
         pages = tuple(self.page(p) for p in self.net.pages)
@@ -345,7 +231,7 @@ class _Checker:
             initial = typed_marking(self.elaborator, text, colset)
         takes_stamps = text is None
         if text is not None and initial is not None and colset.timed and place.fusion:
-            stamped = _form_type(Form.TIMED_MULTISET, colset.type)
+            stamped = form_type(Form.TIMED_MULTISET, colset.type)
             takes_stamps = initial[1] is Form.MULTISET and self.elaborator.fits(
                 text, stamped, colset.name
             )
@@ -365,7 +251,7 @@ class _Checker:
         self, text: SourceText, colset: Colset, forms: tuple[Form, ...], output: bool
     ) -> tuple[Exp, Form] | None:
         """The expression and the first form that fits it; None after an error."""
-        return _typed(self.elaborator, text, colset, forms, output)
+        return typed_text(self.elaborator, text, colset, forms, output)
 
     def transition(
         self, t: Transition, colsets: dict[str, Colset | None], places: dict[str, Place]
@@ -461,8 +347,8 @@ class _Checker:
                 )
             return TypedArc(arc.id, arc.kind, arc.place, None, arc.origin)
         if arc.inscription is not None:
-            text = _unit_number(arc.inscription.text, colset)
-        elif _is_unit(colset):
+            text = unit_number(arc.inscription.text, colset)
+        elif is_unit(colset):
             text = SourceText("1`()", replace(arc.origin, part="inscription"))
         else:
             self.d.error(
@@ -477,7 +363,7 @@ class _Checker:
             return None
         if not colset.timed and arc.kind is not ArcKind.OUTPUT and is_layered(text):
             return self.layered(arc, text, colset)
-        forms = _ARC_TIMED if colset.timed else _UNTIMED
+        forms = ARC_TIMED if colset.timed else UNTIMED
         found = self.inscription(text, colset, forms, arc.kind is ArcKind.OUTPUT)
         if found is None:
             return None
@@ -519,71 +405,3 @@ def _texts(net: Net) -> Iterator[SourceText]:
 def _one(value: Exp) -> Lit:
     """The coefficient of one token."""
     return Lit(1, INT, replace(value.span, end=value.span.start))
-
-
-def _declared(net: Net) -> frozenset[str]:
-    """All names that the net declares; texts with errors count as far as they can be read."""
-    names: set[str] = set()
-    for declaration in net.declarations:
-        match declaration:
-            case RawColset(name=name) | RawGlobref(name=name):
-                names.add(name)
-            case RawVar(names=several):
-                names.update(several)
-            case RawMl(text=text):
-                names.update(declared_names(text))
-            case _:
-                pass
-    return frozenset(names)
-
-
-def typed_marking(
-    elaborator: Elaborator, text: SourceText, colset: Colset
-) -> tuple[Exp, Form] | None:
-    """What a place of this colour set shall hold, and the first form that fits it; None after an error.
-
-    `text.origin.part` must be "initial marking": there the variables of the net are not known.
-    """
-    forms = _INITIAL_TIMED if colset.timed else _UNTIMED
-    return _typed(elaborator, _unit_number(text, colset), colset, forms, False)
-
-
-def _typed(
-    elaborator: Elaborator,
-    text: SourceText,
-    colset: Colset,
-    forms: tuple[Form, ...],
-    output: bool,
-) -> tuple[Exp, Form] | None:
-    types = [_form_type(f, colset.type) for f in forms]
-    found = elaborator.expression(text, types, expected_name=colset.name, output=output)
-    return None if found is None else (found[1], forms[found[0]])
-
-
-def _form_type(form: Form, t: Type) -> Type:
-    match form:
-        case Form.TOKEN:
-            return t
-        case Form.MULTISET:
-            return list_of(t)
-        case Form.TIMED_TOKEN:
-            return timed_of(t)
-        case Form.TIMED_MULTISET:
-            return list_of(timed_of(t))
-
-
-def _is_unit(colset: Colset) -> bool:
-    """Whether CPN Tools' editor completes the texts at places of this colour set; it goes by the name."""
-    return colset.name == "UNIT"
-
-
-def _unit_number(text: SourceText, colset: Colset) -> SourceText:
-    """CPN Tools' editor shows 3`() as 3 on places of colour set UNIT."""
-    if _is_unit(colset) and _NUMBER.fullmatch(text.text):
-        return SourceText(text.text.strip() + "`()", text.origin, text.marks)
-    return text
-
-
-def _written(arc: TypedArc) -> Origin:
-    """Where its inscription is, if it has one."""
-    return arc.origin if arc.inscription is None else arc.inscription.origin

@@ -39,7 +39,7 @@ from pn2code.play.page import page
 from pn2code.play.seats import MOST_WAITING, Full, Seat, Seats
 from pn2code.play.trouble import Json, Trouble, of_game
 from pn2code.play.with_arms import WithArms
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.trace.json_text import is_deep
 from pn2code.web.guard import HOSTS
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Exp
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.game.enabling import running
+from pn2code.semantics.game.errors import running
 from pn2code.semantics.game.marking import Binding, BindingElement
 from pn2code.semantics.game.token_game import Game
 

@@ -18,7 +18,7 @@ from pn2code.play.session import Session
 from pn2code.play.trouble import Json, Trouble, of_game, rows
 from pn2code.play.typed_texts import MOST_TEXT, BadText
 from pn2code.play.view import View, binding_rows, entries, shortened
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import BindingElement, place_text
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.values.colours import TEXTS

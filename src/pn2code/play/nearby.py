@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pn2code.base.frozen import frozen
 from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking
 

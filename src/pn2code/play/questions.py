@@ -17,7 +17,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.play.loading import Loaded
 from pn2code.play.trouble import Json, Trouble, of_diagnostics, of_game, rows
 from pn2code.play.typed_texts import Typist
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.verdict import properties as own
 from pn2code.verdict.whole import (
     MOST_COLOURS,

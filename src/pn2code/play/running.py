@@ -20,7 +20,7 @@ from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble, of_diagnostics, of_game, rows
 from pn2code.play.typed_texts import Condition
 from pn2code.semantics.evaluation.references import NOTHING
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.simulate.choose import Wish as Engine
 from pn2code.simulate.choose import simulate
 from pn2code.simulate.run import Request

@@ -16,7 +16,7 @@ from typing import Any
 from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble, of_game
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.trace.parties import SIMULATORS, VERIFY

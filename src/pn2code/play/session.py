@@ -32,7 +32,7 @@ from pn2code.play.watching import Watching
 from pn2code.properties.judge import tokens
 from pn2code.semantics.evaluation.random import CHOICE, RandomStream
 from pn2code.semantics.evaluation.references import References
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import (
     BindingElement,
     Marking,

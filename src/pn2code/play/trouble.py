@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from pn2code.diagnostics import Diagnostic, Diagnostics
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 
 Json = dict[str, Any]
 

@@ -19,8 +19,8 @@ from pn2code.ml.core.terms import Exp
 from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net import generative
-from pn2code.net.check import typed_marking
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition, Form
+from pn2code.net.forms import typed_marking
 from pn2code.net.instance_numbers import numbered
 from pn2code.properties.marks import Looks, Marks
 from pn2code.properties.names import Names

@@ -12,7 +12,7 @@ from typing import Any
 from pn2code.play.history import Entry, Kind
 from pn2code.play.session import Session
 from pn2code.play.trouble import Json, of_game
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import PlaceMarking, place_text, variable_text
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.values.colours import TEXTS

@@ -19,20 +19,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pn2code.base.frozen import frozen, record
-from pn2code.properties.meaning import Atom, Formula, Op, looks_at_steps
-
-MOST_STATES = 2_000
-"""States of an automaton; formulas of people have a dozen."""
-MOST_EDGES = 5_000
-"""Edges out of a state before equal ones are one."""
+from pn2code.base.frozen import frozen
+from pn2code.properties.ltl_expansion import MOST_STATES, Graph, Label, TooLargeError, expanded
+from pn2code.properties.ltl_forms import Forms
+from pn2code.properties.meaning import Atom, Formula, Op
 
 Literal = tuple[bool, Formula]
 """Whether it must hold, and what: a condition on the node, or `fires`."""
-
-
-class TooLargeError(Exception):
-    """The automaton of a formula gets too many states."""
 
 
 @frozen
@@ -65,284 +58,11 @@ def automaton(formula: Formula, *, negated: bool = False) -> Automaton:
     Raises:
         TooLargeError: it has more than `MOST_STATES` states.
     """
-    forms = _Forms()
-    return _counted(forms, _expanded(forms, forms.of(formula, not negated)))
+    forms = Forms()
+    return _counted(forms, expanded(forms, forms.of(formula, not negated)))
 
 
-# --- normal form ---------------------------------------------------------------------------------
-
-_TRUE, _FALSE = 0, 1
-_TEMPORAL = frozenset("XFGURW")
-
-
-def is_temporal(f: Formula) -> bool:
-    """Whether an operator of time is in it."""
-    return isinstance(f, Op) and (f.operator in _TEMPORAL or any(map(is_temporal, f.parts)))
-
-
-class _Forms:
-    """Formulas in normal form, by number; equal ones have one number.
-
-    A form is ("lit", positive, what), ("and", a, b), ("or", a, b), ("X", a), ("U", a, b) or ("R", a, b).
-    """
-
-    def __init__(self) -> None:
-        self.forms: list[tuple[object, ...]] = [("true",), ("false",)]
-        self._numbers: dict[tuple[object, ...], int] = {("true",): _TRUE, ("false",): _FALSE}
-
-    def of(self, f: Formula, positive: bool) -> int:
-        """The normal form of a formula, or of its negation."""
-        if isinstance(f, Op) and f.operator == "not":
-            return self.of(f.parts[0], not positive)
-        if not is_temporal(f) and (not looks_at_steps(f) or isinstance(f, Atom)):
-            if f == Atom("true"):
-                return _TRUE if positive else _FALSE
-            return self._number("lit", positive, f)
-        assert isinstance(f, Op)
-        match f.operator:
-            case "and" | "or":
-                parts = [self.of(x, positive) for x in f.parts]
-                return self._both(parts, (f.operator == "and") == positive)
-            case "implies":
-                parts = [self.of(f.parts[0], not positive), self.of(f.parts[1], positive)]
-                return self._both(parts, not positive)
-            case "iff":
-                x, y = f.parts
-                same = self._and(self.of(x, True), self.of(y, positive))
-                other = self._and(self.of(x, False), self.of(y, not positive))
-                return self._or(same, other)
-            case "X":
-                return self._next(self.of(f.parts[0], positive))
-            case "F" | "G":
-                inner = self.of(f.parts[0], positive)
-                eventually = (f.operator == "F") == positive
-                return self._until(_TRUE, inner) if eventually else self._release(_FALSE, inner)
-            case "U" | "R":
-                a, b = (self.of(x, positive) for x in f.parts)
-                return self._until(a, b) if (f.operator == "U") == positive else self._release(a, b)
-            case "W":  # p W q is q R (p or q)
-                p, q = (self.of(x, positive) for x in f.parts)
-                if positive:
-                    return self._release(q, self._or(p, q))
-                return self._until(q, self._and(p, q))
-            case other:
-                raise AssertionError(other)
-
-    def _number(self, *form: object) -> int:
-        number = self._numbers.setdefault(form, len(self.forms))
-        if number == len(self.forms):
-            self.forms.append(form)
-        return number
-
-    def _both(self, parts: Sequence[int], conjunction: bool) -> int:
-        a, b = parts
-        return self._and(a, b) if conjunction else self._or(a, b)
-
-    def _opposite(self, a: int, b: int) -> bool:
-        x, y = self.forms[a], self.forms[b]
-        return x[0] == y[0] == "lit" and x[2] == y[2] and x[1] != y[1]
-
-    def _parts(self, number: int, *wanted: object) -> tuple[int, int] | None:
-        """The parts of a form of this operator (and, if given, first part)."""
-        form = self.forms[number]
-        if form[: len(wanted)] != wanted:
-            return None
-        return form[1], form[2]  # type: ignore[return-value]
-
-    def _and(self, a: int, b: int) -> int:
-        if a == b or b == _TRUE:
-            return a
-        if a == _TRUE:
-            return b
-        if _FALSE in (a, b) or self._opposite(a, b):
-            return _FALSE
-        left, right = self._parts(a, "R", _FALSE), self._parts(b, "R", _FALSE)
-        if left and right and not (self._lasts(a) or self._lasts(b)):
-            return self._release(_FALSE, self._and(left[1], right[1]))
-        return self._number("and", *sorted((a, b)))
-
-    def _or(self, a: int, b: int) -> int:
-        if a == b or b == _FALSE:
-            return a
-        if a == _FALSE:
-            return b
-        if _TRUE in (a, b) or self._opposite(a, b):
-            return _TRUE
-        left, right = self._parts(a, "U", _TRUE), self._parts(b, "U", _TRUE)
-        if left and right:
-            return self._until(_TRUE, self._or(left[1], right[1]))
-        return self._number("or", *sorted((a, b)))
-
-    def _next(self, a: int) -> int:
-        return a if a in (_TRUE, _FALSE) or self._lasts(a) else self._number("X", a)
-
-    def _until(self, a: int, b: int) -> int:
-        if b in (_TRUE, _FALSE) or a in (_FALSE, b) or self._lasts(b):
-            return b
-        inner = self._parts(b, "U")
-        if inner is not None and (a in (_TRUE, inner[0])):
-            return self._until(a, inner[1])
-        return self._number("U", a, b)
-
-    def _release(self, a: int, b: int) -> int:
-        if b in (_TRUE, _FALSE) or a in (_TRUE, b) or self._lasts(b):
-            return b
-        inner = self._parts(b, "R")
-        if inner is not None and (a in (_FALSE, inner[0])):
-            return self._release(a, inner[1])
-        return self._number("R", a, b)
-
-    def _lasts(self, number: int) -> bool:
-        """Whether it holds at all nodes of a path or at none: `G F p`, `F G p`, and what is made of these."""
-        form = self.forms[number]
-        if form[0] in ("and", "or"):
-            return all(self._lasts(x) for x in form[1:])  # type: ignore[arg-type]
-        always, finally_ = self._parts(number, "R", _FALSE), self._parts(number, "U", _TRUE)
-        if always is not None:
-            return self.forms[always[1]][:2] == ("U", _TRUE)
-        return finally_ is not None and self.forms[finally_[1]][:2] == ("R", _FALSE)
-
-
-# --- expansion -----------------------------------------------------------------------------------
-
-Label = frozenset[int]
-"""Literals, by number of their form."""
-State = frozenset[int]
-
-
-@frozen
-class _Edge:
-    """An edge of the automaton: what must be seen now, what must hold next, what is postponed."""
-
-    label: Label
-    target: State
-    postponed: frozenset[int]
-
-    def covers(self, other: _Edge) -> bool:
-        """Whether it asks for no more than another."""
-        return (
-            self.label <= other.label
-            and self.target <= other.target
-            and self.postponed <= other.postponed
-        )
-
-
-@record
-class _Graph:
-    """States 0, 1, ..; of each its edges with the number of their target."""
-
-    edges: list[list[tuple[Label, int, frozenset[int]]]]
-    conditions: tuple[int, ...]
-
-
-def _expanded(forms: _Forms, formula: int) -> _Graph:
-    start: State = frozenset({formula} - {_TRUE})
-    numbers = {start: 0}
-    order = [start]
-    edges: list[list[tuple[Label, int, frozenset[int]]]] = []
-    for state in order:
-        own = []
-        for edge in _edges(forms, state):
-            if edge.target not in numbers:
-                if len(order) >= MOST_STATES:
-                    raise TooLargeError
-                numbers[edge.target] = len(order)
-                order.append(edge.target)
-            own.append((edge.label, numbers[edge.target], edge.postponed))
-        edges.append(own)
-    conditions = sorted({u for own in edges for _, _, postponed in own for u in postponed})
-    return _merged(_Graph(edges, tuple(conditions)))
-
-
-def _edges(forms: _Forms, state: State) -> list[_Edge]:
-    """All edges from a set of obligations; none covers another."""
-    found: dict[_Edge, None] = {}
-    none: frozenset[int] = frozenset()
-    start = (state, none, none, none)
-    seen = {start}
-    stack = [start]
-
-    def push(*edges: tuple[frozenset[int], frozenset[int], State, frozenset[int]]) -> None:
-        for edge in edges:
-            if edge not in seen:
-                seen.add(edge)
-                stack.append(edge)
-
-    # What is left to look at, what holds by now, what must hold next, what is postponed.
-    while stack:
-        todo, done, later, postponed = stack.pop()
-        if len(seen) > MOST_EDGES:
-            raise TooLargeError
-        if not todo:
-            label = frozenset(x for x in done if forms.forms[x][0] == "lit")
-            found[_Edge(label, later, postponed)] = None
-            continue
-        number = min(todo, key=lambda x: (forms.forms[x][0] in ("or", "U", "R"), x))
-        rest, now = todo - {number}, done | {number}
-        match forms.forms[number]:
-            case ("true",):
-                push((rest, now, later, postponed))
-            case ("lit", *_):
-                if not any(_excludes(forms, number, x) for x in done):
-                    push((rest, now, later, postponed))
-            case ("and", int(a), int(b)):
-                push((rest | ({a, b} - now), now, later, postponed))
-            case ("or", int(a), int(b)):
-                choices = (now,) if {a, b} & now else ({b}, {a})
-                push(*((rest | (x - now), now, later, postponed) for x in choices))
-            case ("X", int(a)):
-                push((rest, now, later | {a}, postponed))
-            case ("U", int(a), int(b)):
-                if b not in now:
-                    again = (later | {number}, postponed | {number})
-                    push((rest | ({a} - now), now, *again))
-                push((rest | ({b} - now), now, later, postponed))
-            case ("R", int(a), int(b)):
-                if a not in now:
-                    push((rest | ({b} - now), now, later | {number}, postponed))
-                push((rest | ({a, b} - now), now, later, postponed))
-            case _:
-                pass  # false: no way
-    return _least(list(found))
-
-
-def _excludes(forms: _Forms, a: int, b: int) -> bool:
-    """Whether two literals cannot hold together: opposites, or two different steps."""
-    x, y = forms.forms[a], forms.forms[b]
-    if y[0] != "lit":
-        return False
-    if x[2] == y[2]:
-        return x[1] != y[1]
-    steps = all(isinstance(w, Atom) and w.kind == "fires" for w in (x[2], y[2]))
-    return steps and x[1] is True and y[1] is True
-
-
-def _least(found: Sequence[_Edge]) -> list[_Edge]:
-    kept: list[_Edge] = []
-    for edge in dict.fromkeys(found):
-        if not any(other.covers(edge) for other in kept):
-            kept = [x for x in kept if not edge.covers(x)] + [edge]
-    return kept
-
-
-def _merged(graph: _Graph) -> _Graph:
-    """States with equal edges as one, as long as there are any."""
-    while True:
-        first: dict[frozenset[tuple[Label, int, frozenset[int]]], int] = {}
-        new = [first.setdefault(frozenset(own), len(first)) for own in graph.edges]
-        if len(first) == len(graph.edges):
-            return graph
-        edges: list[list[tuple[Label, int, frozenset[int]]]] = [[] for _ in first]
-        for state, own in enumerate(graph.edges):
-            if not edges[new[state]]:
-                edges[new[state]] = list(dict.fromkeys((x, new[to], p) for x, to, p in own))
-        graph = _Graph(edges, graph.conditions)
-
-
-# --- counting ------------------------------------------------------------------------------------
-
-
-def _counted(forms: _Forms, graph: _Graph) -> Automaton:
+def _counted(forms: Forms, graph: Graph) -> Automaton:
     """One acceptance condition instead of several."""
     component = _components([[to for _, to, _ in own] for own in graph.edges])
     last = len(graph.conditions)
@@ -380,7 +100,7 @@ def _counted(forms: _Forms, graph: _Graph) -> Automaton:
     return _finished(forms, arcs, accepting)
 
 
-def _finished(forms: _Forms, arcs: list[list[tuple[Label, int]]], accepting: set[int]) -> Automaton:
+def _finished(forms: Forms, arcs: list[list[tuple[Label, int]]], accepting: set[int]) -> Automaton:
     """Without what cannot accept, bisimilar states as one, labels as literals."""
     component = _components([[to for _, to in own] for own in arcs])
     inner = {
@@ -421,13 +141,13 @@ def _finished(forms: _Forms, arcs: list[list[tuple[Label, int]]], accepting: set
     return Automaton(len(number), tuple(final), tuple(made))
 
 
-def _literal(forms: _Forms, number: int) -> Literal:
+def _literal(forms: Forms, number: int) -> Literal:
     _, positive, what = forms.forms[number]
     assert isinstance(positive, bool) and isinstance(what, Atom | Op)
     return positive, what
 
 
-def _simple_labels(forms: _Forms, labels: Iterable[Label]) -> list[Label]:
+def _simple_labels(forms: Forms, labels: Iterable[Label]) -> list[Label]:
     """Labels between the same states: `p` instead of `p q` and `p !q`; weaker ones replace stronger ones."""
     found = list(dict.fromkeys(labels))
     changed = True
@@ -450,7 +170,7 @@ def _simple_labels(forms: _Forms, labels: Iterable[Label]) -> list[Label]:
     return found
 
 
-def _are_opposite(forms: _Forms, a: int, b: int) -> bool:
+def _are_opposite(forms: Forms, a: int, b: int) -> bool:
     return forms.forms[a][2] == forms.forms[b][2]
 
 

@@ -32,7 +32,6 @@ class Sort(Enum):
     OTHER = "other"
 
 
-_OPPOSITE = {Sort.LESS: Sort.MORE, Sort.MORE: Sort.LESS}
 _NEXT = frozenset({"X", "EX", "AX"})
 _UNTIL = frozenset({"U", "AU", "EU", "W", "AW", "EW"})
 _ALWAYS = frozenset({"G", "AG", "EG"})

@@ -36,7 +36,7 @@ from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition, Role
 from pn2code.net.register_places import MADE
 from pn2code.registers.recognised import Register, refuse, registers
-from pn2code.robot_scripts.machine import analyse
+from pn2code.robot_scripts.analyse import analyse
 
 
 @frozen

@@ -14,7 +14,7 @@ from pn2code.cell.scalars import message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition
-from pn2code.robot_scripts.machine import initial_tokens, tokens
+from pn2code.robot_scripts.tokens import initial_tokens, tokens
 
 _HINT = (
     "a register has one token from the start, which each transition of the supervisor that uses it replaces or puts "

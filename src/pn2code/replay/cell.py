@@ -21,7 +21,8 @@ from pn2code.replay.meshes import Meshes
 from pn2code.robot.commands import CHANGES
 from pn2code.robot.geometry import bodies, body_of
 from pn2code.robot.looks import Look
-from pn2code.robot.parts import PartChange, Parts
+from pn2code.robot.part import PartChange
+from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tools_table import ToolKind

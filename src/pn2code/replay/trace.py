@@ -22,7 +22,8 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.trace.lines import is_number
 from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
-from pn2code.trace.replay import ReplayResult, replay_lines
+from pn2code.trace.replay import replay_lines
+from pn2code.trace.replay_result import ReplayResult
 from pn2code.trace.whole_lines import whole_lines
 
 MOST_STEPS = 1_000_000

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array
 
 ClearanceKind = Literal["robots", "scene", "self"]

@@ -12,19 +12,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pn2code.robot.backend import (
-    BEFORE,
-    BackendName,
-    Beside,
-    Camera,
-    Clearance,
-    Picture,
-)
+from pn2code.robot.backend import BEFORE, BackendName, Beside, Camera, Clearance, Picture
 from pn2code.robot.bullet_distances import BulletDistances, Placed
 from pn2code.robot.bullet_world import BulletWorld, silent
 from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import bodies, zone_body
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.tools_table import ToolKind

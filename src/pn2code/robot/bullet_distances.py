@@ -10,7 +10,7 @@ from typing import Any
 from pn2code.base.frozen import frozen, record
 from pn2code.robot.backend import Beside, Clearance, ClearanceKind
 from pn2code.robot.bullet_world import BulletWorld, LoadedBody, LoadedRobot
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.placed_links import tool_links
 from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
 

@@ -17,7 +17,7 @@ from collections.abc import Collection, Iterable, Iterator
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Command, MoveExternal
 from pn2code.robot.external import Clamp
-from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tools_table import ToolKind

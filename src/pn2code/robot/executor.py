@@ -14,12 +14,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Literal, assert_never
-from weakref import WeakKeyDictionary
+from typing import assert_never
 
 import numpy as np
 
-from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import Motion, MotionKind
 from pn2code.robot.along import AlongTrajectory, Led, plan_led
 from pn2code.robot.blend import plan_through
 from pn2code.robot.carried import WithAxes
@@ -39,12 +38,11 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.digits import told_apart
-from pn2code.robot.external import ExternalAxis
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import plan_circ, plan_lin, plan_ptp, swivel_of
-from pn2code.robot.motion_checks import check_axes, other_branches
+from pn2code.robot.motion_checks import check_axes
 from pn2code.robot.motion_fault import MotionFault
+from pn2code.robot.out_of_reach import unreachable
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
 from pn2code.robot.time_law import MotionLimits
 from pn2code.robot.tool_use import expect_tool, tool_after
@@ -53,81 +51,8 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
-_MOVED: WeakKeyDictionary[Trajectory, Array] = WeakKeyDictionary()
-"""What `moved` has worked out."""
-MotionKind = Literal["ptp", "lin", "circ", "blend", "axis", "tool", "measure", "wait"]
 _OWN = np.eye(4)
-_STILL = 1e-9  # rad: a turntable that turns by less stands
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
-
-
-@frozen(eq=False)
-class Motion:
-    """A command under way.
-
-    Args:
-        robot: its name.
-        command: what was asked for.
-        began: time of the beginning, s; it ends at `began + duration`.
-        trajectory: joint positions, time from 0.
-        start: TCP pose in the world at the beginning; target: at the end.
-        result: of a measurement.
-        step: s, how often to look while it lasts: on a line the TCP goes 5 mm meanwhile.
-    """
-
-    robot: str
-    command: Command
-    kind: MotionKind
-    began: float
-    trajectory: Trajectory
-    start: Pose
-    target: Pose
-    result: Pose | None = None
-    step: float = 0.02
-
-    @property
-    def duration(self) -> float:
-        """Seconds."""
-        return self.trajectory.duration
-
-    @property
-    def ends(self) -> float:
-        """Time of the end."""
-        return self.began + self.duration
-
-    def q(self, now: float) -> Array:
-        """Joint position (rad) at a time on the clock of `began`."""
-        return self.trajectory.q(now - self.began)
-
-    def sample(self, times: Array) -> Array:
-        """Joint positions (n, 6) at many times: much faster than one by one."""
-        return self.trajectory.sample(np.clip(times - self.began, 0.0, self.duration))
-
-
-def turned(robot: CellRobot, motion: Motion) -> frozenset[str]:
-    """The turntables, belts and other axes of devices that a motion moves, as `left/plate`."""
-    return turned_by(robot, motion.trajectory)
-
-
-def turned_by(
-    robot: CellRobot, path: Trajectory, axes: tuple[ExternalAxis, ...] | None = None
-) -> frozenset[str]:
-    """The same of a trajectory; `axes`: of these alone."""
-    axes = robot.carrying if axes is None else axes
-    tables = {robot.index(axis.name): axis.name for axis in axes}
-    if not tables:
-        return frozenset()
-    off = np.abs(moved(path))
-    return frozenset(f"{robot.name}/{name}" for i, name in tables.items() if off[i] > _STILL)
-
-
-def moved(path: Trajectory) -> Array:
-    """How far a trajectory moves each axis; of one whose ends are poses it is worked out once, not at each look."""
-    if not isinstance(path, LinearTrajectory | AlongTrajectory):
-        return np.asarray(path.q(path.duration) - path.q(0.0))
-    if path not in _MOVED:
-        _MOVED[path] = np.asarray(path.q(path.duration) - path.q(0.0))
-    return _MOVED[path]
 
 
 class RobotExecutor:
@@ -300,7 +225,7 @@ class RobotExecutor:
         angle = self._arm_angle(command)
         found = self.robot.kinematics.nearest(target, q, self.robot.branch, angle)
         if found is None:
-            raise self._unreachable(target, q, angle)
+            raise unreachable(self.robot, target, q, angle)
         return found.q, target
 
     def _arm_angle(self, command: MoveJoint | MoveLinear | MoveCircular) -> float | None:
@@ -524,33 +449,6 @@ class RobotExecutor:
             raise MotionFault("bad-command", f"the pose has a number that is not finite: {values}")
         return matrix_of(pose)
 
-    def _unreachable(self, target: Array, q: Array, arm_angle: float | None) -> MotionFault:
-        alone = self.robot.kinematics.alone
-        if isinstance(self.robot.kinematics, WithAxes):
-            target = inverse(self.robot.kinematics.T_base_arm(q)) @ target
-        if refused := alone.refused(target):
-            return MotionFault("unreachable", refused)
-        rows = alone.all_branches(target[None], arm_angle)[0]
-        there = rows[~np.isnan(rows[:, 0])]
-        if not len(there):
-            reach = _reach(alone, target, arm_angle)
-            return MotionFault("unreachable", f"the pose is out of reach: {reach}")
-        if self.robot.branch is not None:
-            return MotionFault(
-                "unreachable",
-                f"branch {self.robot.branch} does not reach the pose inside the joint limits"
-                + other_branches(alone, target, self.robot.branch, arm_angle),
-            )
-        margins = [alone.limit_margin(row) for row in there]
-        margin, axis = max(margins)
-        other = alone.arm_angle is not None and arm_angle is None
-        return MotionFault(
-            "joint-limit",
-            "every branch that reaches the pose leaves the joint limits; the nearest puts axis "
-            f"{axis + 1} {alone.arm.shown(axis, -margin)} {alone.arm.unit(axis)} outside"
-            + ("; another `arm_angle` may do" if other else ""),
-        )
-
     def _named(self, fault: MotionFault, command: Command) -> MotionFault:
         """The fault with the robot's name and the pose in the world."""
         if fault.pose is not None:
@@ -602,31 +500,3 @@ class RobotExecutor:
         elif kind not in ("ptp", "axis"):
             step = max(step, path.duration)
         return Motion(self.robot.name, command, kind, now, path, self.pose, target, result, step)
-
-
-_RAY = 48
-"""Poses between the base and one that is out of reach that are looked at, twice."""
-_FAR = 4.0
-"""How many times as far as a pose that is too near is looked."""
-
-
-def _reach(k: Kinematics, target: Array, arm_angle: float | None) -> str:
-    """How far the tool comes from the base in the direction of a pose that it does not reach, turned as it is there."""
-    centre = 1000.0 * float(np.linalg.norm(target[:3, 3]))
-    says = "{} mm from the base (limit in this direction, with the tool turned so: {})"
-
-    def reached(parts: Array) -> Array:
-        poses = np.repeat(target[None], len(parts), axis=0)
-        poses[:, :3, 3] *= parts[:, None]
-        return np.asarray(~np.isnan(k.all_branches(poses, arm_angle)[:, :, 0]).all(axis=1))
-
-    for end in (0.0, _FAR):
-        parts = np.linspace(1.0, end, _RAY + 1)
-        there = np.flatnonzero(reached(parts))
-        if len(there):
-            i = max(int(there[0]), 1)
-            parts = np.linspace(parts[i - 1], parts[i], _RAY + 1)  # around the border
-            limit = parts[int(np.flatnonzero(reached(parts))[0])] * centre
-            far, most = told_apart(centre, limit, digits=0)
-            return says.format(far, f"{'at most' if end < 1.0 else 'at least'} {most} mm")
-    return says.format(f"{centre:.0f}", "nothing is reached")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pn2code.robot.backend import BackendName, Beside, Camera, Clearance, Picture
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 

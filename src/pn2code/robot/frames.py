@@ -15,7 +15,7 @@ import re
 from collections.abc import Collection, Mapping
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.geometry import FRAME
+from pn2code.cell_file.poses import FRAME
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose

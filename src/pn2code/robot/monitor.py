@@ -18,10 +18,10 @@ from typing import Literal
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import MotionKind
 from pn2code.robot.backend import Backend, Clearance
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
-from pn2code.robot.executor import MotionKind
 from pn2code.robot.kinematics import Conditioning
 from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell

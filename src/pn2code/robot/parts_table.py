@@ -14,7 +14,8 @@ import re
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.geometry import PART, POSE
+from pn2code.cell_file.poses import POSE
+from pn2code.cell_file.things import PART
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.scene_objects import SceneObject, read_shape

@@ -12,11 +12,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array
 
 MOST_TILT = math.radians(10.0)
+_ROUNDING = 1e-9
+"""Rounding (rad): what leans by just as much as is allowed stays, on every processor."""
 
 
 def riding(parts: Iterable[Part], robot: str) -> list[Part]:
@@ -34,7 +36,7 @@ def tilted(robot: CellRobot, q: Array, parts: Iterable[Part]) -> str:
     """That something leans too far on what a robot at `q` carries, for people; "": nothing does."""
     for part in riding(parts, robot.name):
         leans = tilt(part, carried_to(robot, np.asarray(q), part))
-        if leans > MOST_TILT:
+        if leans > MOST_TILT + _ROUNDING:
             return leaning(robot.name, part.name, leans)
     return ""
 

@@ -10,13 +10,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from pn2code.robot.part import Part
 from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array, describe, difference, pose_of
-
-if TYPE_CHECKING:
-    from pn2code.robot.parts import Part
 
 
 def tool_in_use(parts: Iterable[Part], robot: str) -> Part | None:

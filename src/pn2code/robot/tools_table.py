@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.geometry import TOOL
+from pn2code.cell_file.arms import TOOL
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose

@@ -16,7 +16,7 @@ import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.geometry import MOST_HULLS
+from pn2code.cell_file.things import MOST_HULLS
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.payload import Rating

@@ -19,7 +19,7 @@ from lxml import etree
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.hulls import Hull
-from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell

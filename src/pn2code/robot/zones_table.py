@@ -7,7 +7,7 @@ zones["front"].max_speed        # m/s; None: as fast as may be
 from __future__ import annotations
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.geometry import ZONE
+from pn2code.cell_file.scene import ZONE
 from pn2code.robot.commands import Pose
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import read_pose

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pn2code.robot_scripts.ir import Element, Line, Node, titled
 from pn2code.robot_scripts.machine import Step
 from pn2code.robot_scripts.names import Names
-from pn2code.robot_scripts.values import ScalarShape
+from pn2code.robot_scripts.shapes import ScalarShape
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import all_names, children
 

@@ -16,21 +16,17 @@ from pn2code.cell.scalars import ScalarKind, message_scalars
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
-from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import codes
 from pn2code.robot_scripts import names as robot_names
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.ir import Element, place_element, titled
-from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
+from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.robot_scripts.names import Names, identifier, small_identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
-from pn2code.robot_scripts.values import (
-    Shape,
-    UnsupportedError,
-    Value,
-    flatten,
-    make,
-    shape_of_colset,
-)
+from pn2code.robot_scripts.shapes import Shape, shape_of_colset
+from pn2code.robot_scripts.tokens import initial_tokens, unstamped
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Value, flatten, make
 from pn2code.tdl import tree as t
 
 

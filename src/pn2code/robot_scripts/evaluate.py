@@ -16,7 +16,9 @@ from pn2code.ml.typing.matches import Coverage, coverage
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import PARTIAL
 from pn2code.robot_scripts.operations import builtin, cons, empty_list, equal, item_of, others_of
+from pn2code.robot_scripts.shapes import ScalarShape, is_enumeration, shape_of_type
 from pn2code.robot_scripts.strict import Owed, Path
+from pn2code.robot_scripts.unsupported import UnsupportedError
 from pn2code.robot_scripts.values import (
     FALSE,
     TRUE,
@@ -26,16 +28,12 @@ from pn2code.robot_scripts.values import (
     Rec,
     Rows,
     Scalar,
-    ScalarShape,
-    UnsupportedError,
     Value,
     choose,
     conjunction,
-    is_enumeration,
     pose,
     scalars_in,
     select,
-    shape_of_type,
 )
 from pn2code.robot_scripts.values import literal as literal_of
 from pn2code.tdl import tree as t

@@ -16,7 +16,8 @@ from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.guards import Constant, fact, ways
-from pn2code.robot_scripts.not_a_number import MayBeNan
+from pn2code.robot_scripts.names import Names
+from pn2code.robot_scripts.not_a_number import MayBeNan, may_be_nan
 from pn2code.robot_scripts.values import Env, Rows, Scalar, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import children
@@ -159,6 +160,14 @@ class Known:
                 is_part = isinstance(e, t.CallExpression) and e.function in _PARTS
                 fails = self.fails_itself(e) and (is_part or not self.may_be_nan(e))
                 return fails or any(map(self.fails, children(e)))
+
+
+def known_where(names: Names, conditions: Iterable[t.Expression] = ()) -> Known:
+    """What is known of numbers where some conditions hold."""
+    found = Known(names.constant_values, lambda e: may_be_nan(e, names), {})
+    for c in conditions:
+        found = found.with_condition(c)
+    return found
 
 
 def _range(operator: str, value: int) -> Range:

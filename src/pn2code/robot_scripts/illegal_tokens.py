@@ -13,21 +13,16 @@ from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, FlatPlace
 from pn2code.robot_scripts import membership, unread
 from pn2code.robot_scripts.evaluate import Evaluator
-from pn2code.robot_scripts.failing import Known
+from pn2code.robot_scripts.failing import known_where
 from pn2code.robot_scripts.ir import Chain, Line, Node
-from pn2code.robot_scripts.machine import Machine, delayed_tokens
+from pn2code.robot_scripts.machine import Machine
+from pn2code.robot_scripts.names import Names
 from pn2code.robot_scripts.operations import logical_not
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path
-from pn2code.robot_scripts.values import (
-    FALSE,
-    TRUE,
-    Env,
-    UnsupportedError,
-    Value,
-    conjunction,
-    scalars_in,
-)
+from pn2code.robot_scripts.tokens import delayed_tokens
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import FALSE, TRUE, Env, Value, conjunction, scalars_in
 from pn2code.tdl import tree as t
 
 PathTo = Callable[[Iterable[tuple[core.Exp, bool]], Env], tuple[Path | None, list[Owed]]]
@@ -39,7 +34,7 @@ def stops(
     pure: Evaluator,
     situation: Situation,
     env: Env,
-    known_where: Callable[[Iterable[t.Expression]], Known],
+    names: Names,
     path_to: PathTo,
 ) -> list[Node]:
     """A stop for each token that a transition puts, unless it is known to be in the colour set of its place.
@@ -49,14 +44,14 @@ def stops(
         pure: computes values.
         situation: the transition.
         env: its variables, with the outputs of its code segment.
-        known_where: what is known of numbers where some conditions hold.
+        names: of the script.
         path_to: of an inscription.
     """
     transition = situation.step.transition
     # What a code segment gives may be outside the colour set of its variable, as in CPN Tools.
     results = {v.uid for v in transition.code.outputs} if transition.code else set()
     taken = {v.uid for v in transition.variables} - results
-    known = known_where(situation.ordered).with_colours(transition.variables, taken, env)
+    known = known_where(names, situation.ordered).with_colours(transition.variables, taken, env)
     out: dict[Node, None] = {}
     for arc in transition.arcs:
         if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:

@@ -164,3 +164,8 @@ def titled(x: FlatPlace | FlatTransition) -> str:
 def transition_element(x: FlatTransition) -> Element:
     """What a transition is called in comments."""
     return Element(x.name, "transition", x.origin, titled(x))
+
+
+def own_element(x: FlatTransition) -> Element:
+    """What a transition is called where variables of its own are declared."""
+    return Element(x.name, "transition", x.origin, f"transition {titled(x)}")

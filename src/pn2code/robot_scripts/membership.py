@@ -20,15 +20,8 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.operations import builtin, item_of, others_of
-from pn2code.robot_scripts.values import (
-    Rec,
-    Rows,
-    Scalar,
-    UnsupportedError,
-    Value,
-    scalars_in,
-    select,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Rec, Rows, Scalar, Value, scalars_in, select
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 

@@ -13,7 +13,8 @@ from pn2code.cell.axes_types import are_axes
 from pn2code.cell.config import Primitive
 from pn2code.diagnostics import Span
 from pn2code.robot_scripts import codes
-from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, as_quantity
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import Rec, Scalar, Value, as_quantity
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 

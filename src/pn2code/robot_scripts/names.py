@@ -15,14 +15,8 @@ from pn2code.cell.scalars import ScalarKind
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.robot_scripts.ir import Declared, Element
-from pn2code.robot_scripts.values import (
-    Fields,
-    RowsShape,
-    Scalar,
-    ScalarShape,
-    Shape,
-    scalar_shapes,
-)
+from pn2code.robot_scripts.shapes import Fields, RowsShape, ScalarShape, Shape, scalar_shapes
+from pn2code.robot_scripts.values import Scalar
 from pn2code.tdl import tree as t
 from pn2code.tdl.expressions import RESERVED
 from pn2code.tdl.grammar import KEYWORDS

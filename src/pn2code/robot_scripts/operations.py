@@ -13,21 +13,18 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import Type
 from pn2code.robot_scripts import lists
+from pn2code.robot_scripts.shapes import Fields, RowsShape, ScalarShape, shape_of_type
+from pn2code.robot_scripts.unsupported import UnsupportedError
 from pn2code.robot_scripts.values import (
     FALSE,
     TRUE,
-    Fields,
     Rec,
     Rows,
-    RowsShape,
     Scalar,
-    ScalarShape,
-    UnsupportedError,
     Value,
     as_real,
     common,
     conjunction,
-    shape_of_type,
 )
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl

@@ -10,16 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pn2code.robot_scripts.names import Names
-from pn2code.robot_scripts.values import (
-    Fields,
-    Rec,
-    Rows,
-    RowsShape,
-    Scalar,
-    ScalarShape,
-    Shape,
-    Value,
-)
+from pn2code.robot_scripts.shapes import Fields, RowsShape, ScalarShape, Shape
+from pn2code.robot_scripts.values import Rec, Rows, Scalar, Value
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, single
 from pn2code.tdl.expressions import MAKES

@@ -10,24 +10,20 @@ from collections.abc import Sequence, Set
 
 from pn2code.diagnostics import Note
 from pn2code.net.flat import FlatTransition, Role
-from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import codes
+from pn2code.robot_scripts.code_segment import CodeSegment
 from pn2code.robot_scripts.conditions import all_hold
 from pn2code.robot_scripts.data import Data
+from pn2code.robot_scripts.enabling import Enabling, split
+from pn2code.robot_scripts.failing import known_where
 from pn2code.robot_scripts.guards import covering, exclusive
 from pn2code.robot_scripts.ir import Comment, LeftOut, Line, Node, Region, transition_element
 from pn2code.robot_scripts.machine import Outcome, Step
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.steps import StepTranslator, header
 from pn2code.robot_scripts.structure import Branches, Halt, Then, To, Tree
-from pn2code.robot_scripts.values import (
-    FALSE,
-    TRUE,
-    UnsupportedError,
-    Value,
-    conjunction,
-    disjunction,
-    scalars_in,
-)
+from pn2code.robot_scripts.unsupported import UnsupportedError
+from pn2code.robot_scripts.values import FALSE, TRUE, Value, conjunction, disjunction, scalars_in
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import names_in
 from pn2code.tdl.pretty import expression
@@ -45,11 +41,16 @@ class States:
     def __init__(self, data: Data) -> None:
         self._data = data
         self._places = data.partition.net.places
+        self._enabling = Enabling(
+            data.machine,
+            data.names,
+            data.pure,
+            {s.variable: s.name for s in data.config.sensors},
+            data.config.storage,
+        )
         self._step = StepTranslator(
-            data.machine, data.names, data.config.primitives, data.pure,
-            data.place_names, data.shapes, data.file_names,
-            {s.variable: s.name for s in data.config.sensors}, data.config.storage,
-        )  # fmt: skip
+            data.machine, data.names, data.pure, data.place_names, data.shapes, data.file_names
+        )
         self.left_out: list[LeftOut] = []
 
     def trees(self) -> dict[int, Tree]:
@@ -83,7 +84,9 @@ class States:
         situations: list[Situation] = []
         for s in steps:
             try:
-                situations.append(self._step.situation(s, {**self._data.place_values, **messages}))
+                situations.append(
+                    self._enabling.situation(s, {**self._data.place_values, **messages})
+                )
             except UnsupportedError as problem:
                 self._data.report(
                     problem, f"transition `{s.transition.short}`", s.transition.origin
@@ -123,7 +126,7 @@ class States:
     def _known(self, s: Situation, channels: Set[int]) -> tuple[t.Expression, t.Expression]:
         """What can be said of a transition's conditions when only these messages have come, and what cannot."""
         others = {n for c in s.channels if c not in channels for n in self._data.message_names[c]}
-        early, late = self._step.split(s.ordered, others)
+        early, late = split(s.ordered, others, self._data.names)
         return all_hold(early), all_hold(late)
 
     def _decide(self, place: int, situations: list[Situation]) -> Tree:
@@ -161,7 +164,7 @@ class States:
         """Whether the program's own data decide which messages the script waits for."""
         units = self._units(situations)
         if [id(s) for u in units for s in u] != [id(s) for s in situations] and any(
-            self._step.known().fails(s.own_condition) for s in situations
+            known_where(self._data.names).fails(s.own_condition) for s in situations
         ):
             return False  # one that may fail would be asked before an earlier one that is possible
         return all(
@@ -329,16 +332,21 @@ class States:
 
     # --- occurrence ---
 
+    def _code_segment(self, s: Situation) -> CodeSegment:
+        data = self._data
+        return CodeSegment(data.machine, data.names, data.config.primitives, data.pure, s)
+
     def _occur(self, s: Situation, front: list[Node]) -> Tree:
         """A transition's statements and where control goes."""
         try:
-            actions, env = self._step.act(s)
-            nodes = [*front, *self._step.occur(s, actions, env)]
+            acted = self._code_segment(s).act()
+            env = acted.env
+            nodes = [*front, *self._step.occur(s, acted)]
             outcomes = s.step.outcomes
             ends = [
                 (
                     self._outcome_condition(o, env),
-                    self._step.put(s, o, env),
+                    self._step.put(s, o, acted),
                     self._data.machine.target(o),
                 )
                 for o in outcomes

@@ -22,6 +22,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.robot_scripts.analyse import analyse
 from pn2code.robot_scripts.data import Data
 from pn2code.robot_scripts.ir import (
     LeftOut,
@@ -32,7 +33,7 @@ from pn2code.robot_scripts.ir import (
     statements,
     transition_element,
 )
-from pn2code.robot_scripts.machine import Machine, analyse
+from pn2code.robot_scripts.machine import Machine
 from pn2code.robot_scripts.names import Names, small_identifier
 from pn2code.robot_scripts.procedures import extract
 from pn2code.robot_scripts.states import States

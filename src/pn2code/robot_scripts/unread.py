@@ -16,7 +16,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.flat import FlatPlace
 from pn2code.robot_scripts.membership import has_bounds, parts_of
-from pn2code.robot_scripts.values import UnsupportedError
+from pn2code.robot_scripts.unsupported import UnsupportedError
 
 Asked = Callable[[core.Exp], bool]
 _TOTAL = frozenset(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.commands import Pose, tcp_of
-from pn2code.robot.executor import Motion
 from pn2code.robot.monitor import Sample
 from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import pose_of

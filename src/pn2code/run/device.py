@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from pn2code.robot.active_motion import Motion, MotionKind
 from pn2code.robot.commands import Command, Pose, ToolAction, Wait
-from pn2code.robot.executor import Motion, MotionKind
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.trajectories import Still
 

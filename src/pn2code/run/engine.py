@@ -22,6 +22,7 @@ import numpy as np
 from pn2code.cell.partition import Partition
 from pn2code.emission.output import OutputFile
 from pn2code.properties.failing import Failing
+from pn2code.robot.active_motion import Motion, turned
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import (
     Command,
@@ -32,7 +33,7 @@ from pn2code.robot.commands import (
     Pose,
     ToolAction,
 )
-from pn2code.robot.executor import Motion, RobotExecutor, turned
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import Handling
 from pn2code.robot.lying import overlap
-from pn2code.robot.parts import Part, PartChange, PartFault, Parts
+from pn2code.robot.part import Part, PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.cell.config import CellConfig
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.commands import Command, Pose
-from pn2code.robot.executor import Motion
 from pn2code.robot.transforms import Array
 from pn2code.run.arm import MovingArm
 from pn2code.run.command_words import kind_and_label

@@ -14,8 +14,8 @@ from functools import partial
 from typing import Any
 
 from pn2code.channels import LOOK_S, PeerState
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.commands import Command
-from pn2code.robot.executor import Motion
 from pn2code.run.choices import permitted
 from pn2code.run.command_words import kind_and_label
 from pn2code.run.engine import Engine
@@ -25,14 +25,7 @@ from pn2code.run.punctuality import Punctuality
 from pn2code.run.record import Interference, RunRecord
 from pn2code.run.runner import CellStoppedError, RobotRunner
 from pn2code.run.stops import paused, resumed
-from pn2code.tdl.requests import (
-    Event,
-    FileError,
-    MessageConsumed,
-    MessageWritten,
-    Request,
-    Sense,
-)
+from pn2code.tdl.requests import Event, FileError, MessageConsumed, MessageWritten, Request, Sense
 from pn2code.trace.merge import merge
 
 PAUSE_S = 0.001

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from pn2code.base.frozen import frozen, record
 from pn2code.robot.backend import Clearance
 from pn2code.robot.monitor import Verdict
-from pn2code.robot.parts import PartChange
+from pn2code.robot.part import PartChange
 
 FloatArray = npt.NDArray[np.float64]
 

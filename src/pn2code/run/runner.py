@@ -6,8 +6,9 @@ import numpy as np
 
 from pn2code.base.frozen import record
 from pn2code.emission.output import Block
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.commands import ToolAction
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.transforms import Array
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles

@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.executor import Motion
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.trajectories import Trajectory
 from pn2code.robot.transforms import Array
 

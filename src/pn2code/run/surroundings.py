@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from pn2code.robot.active_motion import Motion, turned, turned_by
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import (
@@ -28,8 +29,8 @@ from pn2code.robot.clamps import (
     taken_along,
 )
 from pn2code.robot.commands import Command, Handling, Move, MoveExternal
-from pn2code.robot.executor import Motion, turned, turned_by
-from pn2code.robot.parts import PartChange, PartFault, Parts
+from pn2code.robot.part import PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell

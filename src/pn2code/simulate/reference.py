@@ -16,7 +16,7 @@ from pn2code.net.flat import FlatTransition
 from pn2code.semantics.evaluation.connections import Connections
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.random import CHOICE, RandomStream
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking, variable_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_json import to_json

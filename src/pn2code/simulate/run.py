@@ -14,7 +14,7 @@ from pn2code.monitors.folder import OUTPUT
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import RUNTIME_ERROR
-from pn2code.semantics.game.enabling import GameError, about_files
+from pn2code.semantics.game.errors import GameError, about_files
 from pn2code.semantics.game.marking import Marking
 
 Progress = Callable[[int, int | float], None]

@@ -7,6 +7,7 @@ Everything here is *sound*: what it claims holds in every reachable marking. It 
 is beyond it, it says less. Docs: docs/structure.md.
 """
 
-from pn2code.structure.analysis import Analysis, Limits, Sum, analyse, bounds, bounds_and_sums
+from pn2code.structure.analysis import Sum, analyse, bounds, bounds_and_sums
+from pn2code.structure.found import Analysis, Limits
 
 __all__ = ["Analysis", "Limits", "Sum", "analyse", "bounds", "bounds_and_sums"]

@@ -13,9 +13,9 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.values.colours import Colours
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.semantics.values.multiset import MultiSet
-from pn2code.structure.analysis import Analysis, PInvariant, TInvariant
 from pn2code.structure.bounds import PlaceBound, Proof
 from pn2code.structure.coloured import ColouredInvariant, Projection
+from pn2code.structure.found import Analysis, PInvariant, TInvariant
 from pn2code.structure.sums import Component
 
 CLASSES = {

@@ -20,19 +20,16 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from pn2code.base.frozen import frozen
-from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.evaluation.evaluate import Limits
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import (
     BindingElement,
     Marking,
@@ -59,80 +56,11 @@ from pn2code.trace.model_time import ModelTime
 from pn2code.trace.parties import SIMULATORS, VERIFY, Parties
 from pn2code.trace.repeated import Repeated
 from pn2code.trace.replay_end import Ending, end_problem
+from pn2code.trace.replay_result import Notes, ReplayResult, Rules
 from pn2code.trace.whole_lines import whole_lines
 
 DEFAULT_SEED = 1
 """Of the random numbers of a run whose header does not name another."""
-
-
-@frozen
-class ReplayResult:
-    """What became of a trace.
-
-    Args:
-        ok: whether every step could be repeated.
-        steps: how many were.
-        why: if not ok: what is wrong with the next one.
-        line: its line number in the file, from 1; 0 if ok.
-        transition: its transition, "" if the line names none.
-        ended: the trace's own last word (`why` of its `end` line), None when it just stops.
-        game: the game after the last step that was repeated; None when the net itself could not be started.
-        given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
-        given: places that begin with other tokens than the net's, because the header says so.
-        by_hand: notes of what a person has chosen.
-        ended_at: the model time of that word; None: it has none.
-    """
-
-    ok: bool
-    steps: int
-    why: str
-    line: int
-    transition: str
-    ended: str | None
-    game: Game | None
-    given_up: bool = False
-    given: tuple[str, ...] = ()
-    by_hand: int = 0
-    ended_at: float | None = None
-
-    @property
-    def marking(self) -> Marking | None:
-        """The marking after the last step that was repeated."""
-        return self.game.marking if self.game else None
-
-    def message(self) -> str:
-        """One line for people."""
-        if self.ok:
-            end = f", ended: {self.ended}" if self.ended else ", without an end"
-            return f"{self.steps} steps, each enabled when its turn came{end}"
-        what = f" `{self.transition}`" if self.transition else ""
-        return f"line {self.line}: after {self.steps} steps{what}: {self.why}"
-
-    def report(self, d: Diagnostics, path: Path) -> None:
-        """What is wrong, if anything is, as a diagnostic at the line of the trace file."""
-        if not self.ok:
-            at = Origin(str(path), line=self.line, element=f"step {self.steps + 1}")
-            name = f"`{self.transition}`: " if self.transition else ""
-            d.error(TRACE_REFUSED, name + self.why, at)
-
-
-class Notes(Protocol):
-    """What a run notes of its robots, beside what the net makes them do. Each answer is what is wrong, or None."""
-
-    def begin(self, game: Game, by: str) -> None:
-        """Before the first step."""
-
-    def note(self, line: Mapping[str, Any]) -> str | None:
-        """A note that is not the end."""
-
-    def occurring(self) -> AbstractContextManager[None]:
-        """While a transition occurs."""
-
-    def step(self, line: Mapping[str, Any], t: FlatTransition) -> str | None:
-        """After it has occurred."""
-
-    def end(self, game: Game, why: str) -> str | None:
-        """The last line."""
 
 
 Watch = Callable[[Game, BindingElement | None, Mapping[str, Any]], None]
@@ -144,22 +72,6 @@ class _Wrong(Exception):  # noqa: N818
 
 Progress = Callable[[int, float], None]
 _TOLD_LINES = 500
-
-
-@frozen
-class Rules:
-    """How strictly a trace is read.
-
-    Args:
-        own_clock: the clock follows the rules of the net and `t` must agree; else it follows `t`.
-        priorities: whether no transition of higher priority may be enabled, whoever's it is; else none of the same
-            party.
-        time_unit: seconds in a unit of model time, where the clock follows `t`.
-    """
-
-    own_clock: bool
-    priorities: bool
-    time_unit: float = 1.0
 
 
 def replay(

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from pn2code.base.frozen import frozen
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.marking import Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import Timed

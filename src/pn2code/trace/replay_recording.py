@@ -24,7 +24,8 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.evaluation.evaluate import variables
 from pn2code.semantics.evaluation.references import References
-from pn2code.semantics.game.enabling import Demand, GameError, GivenUpError
+from pn2code.semantics.game.enabling import Demand
+from pn2code.semantics.game.errors import GameError, GivenUpError
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,

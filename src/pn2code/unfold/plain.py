@@ -40,7 +40,7 @@ from pn2code.net.flat import (
     Form,
 )
 from pn2code.semantics.evaluation.evaluate import variables
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Data, MlException, MlLimit, Value
 from pn2code.semantics.values.multiset import MultiSet

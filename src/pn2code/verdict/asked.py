@@ -11,7 +11,7 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import codes, sources
 from pn2code.properties import meaning as m
-from pn2code.properties.ltl import TooLargeError
+from pn2code.properties.ltl_expansion import TooLargeError
 from pn2code.properties.questions import Questions
 from pn2code.properties.split import NoSplitError, Split, groups, is_about_bindings
 from pn2code.semantics.evaluation.effects import Effect, effects_of

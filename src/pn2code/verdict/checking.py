@@ -22,7 +22,7 @@ from pn2code.net import emptiness, free_variables, front, idle_places
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.effects import Effects, outside
-from pn2code.semantics.game.enabling import GameError, GivenUpError
+from pn2code.semantics.game.errors import GameError, GivenUpError
 from pn2code.semantics.game.token_game import Game
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from pn2code.arms import Arms
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.robot import codes, scene
+from pn2code.robot import codes, read_robot, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import (
@@ -33,7 +33,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.files_of import files_of
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.tcp_path import Arc
 from pn2code.robot.transforms import matrix_of
@@ -95,12 +95,13 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
         own = robot.home[robot.kinematics.joints]
         turning = ~robot.kinematics.alone.slides
         angles = [round(math.degrees(q), 4) for q, turns in zip(own, turning, strict=True) if turns]
-        if scene.in_radians(angles):
+        if read_robot.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,
-                f"at HOME{where} no axis of robot `{robot.name}` is further than {scene.FEW_RADIANS:g} degrees from 0",
+                f"at HOME{where} no axis of robot `{robot.name}` is further than {read_robot.FEW_RADIANS:g} degrees "
+                "from 0",
                 config.locator.origin("robots", robot.name, "home"),
-                hint=scene.RADIANS,
+                hint=read_robot.RADIANS,
             )
     at = _at_home(cell.moving[0], config)
     try:

@@ -16,7 +16,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.properties import codes
 from pn2code.properties import meaning as m
 from pn2code.properties.split import Split, is_about_bindings
-from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.errors import GivenUpError
 from pn2code.semantics.game.token_game import GameError
 from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.trace.script import TraceRefusedError

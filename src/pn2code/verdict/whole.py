@@ -18,7 +18,7 @@ from pn2code.division import divided
 from pn2code.net import guard_order
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
-from pn2code.semantics.game.enabling import about_files
+from pn2code.semantics.game.errors import about_files
 from pn2code.verdict import channel_model, closed, controller, other_orders, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pn2code.cli.conform import _robot
-from pn2code.conform.robot import RobotReport
+from pn2code.conform.script_state import RobotReport
 
 EQUAL = RobotReport("robot1", 5, 4, 2, 2, 3, complete=True)
 

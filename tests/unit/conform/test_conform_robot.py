@@ -10,8 +10,9 @@ from helpers.robots import Cell
 from helpers.scripts import checked
 from pn2code.cell.divide import divide
 from pn2code.conform.observations import observed
-from pn2code.conform.robot import RobotReport, explore
+from pn2code.conform.robot import explore
 from pn2code.conform.scheme import Scheme
+from pn2code.conform.script_state import RobotReport
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.tdl import emit
 from pn2code.robot_scripts.translate import lower_robots

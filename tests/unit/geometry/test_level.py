@@ -13,7 +13,7 @@ from helpers.robot_cells import riveting_cell
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.level import level
 from pn2code.robot.commands import MoveAxes, MoveLinear, Pose
-from pn2code.robot.parts import Part, carried_to
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.riders import MOST_TILT, tilt
 from pn2code.robot.robot_cell import CellRobot

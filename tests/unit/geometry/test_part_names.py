@@ -20,7 +20,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Along, MoveExternal
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.scene import load
 
 

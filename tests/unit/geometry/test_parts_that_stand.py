@@ -19,6 +19,7 @@ from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Contents
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.shown import Shown
+from pn2code.robot.active_motion import turned
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import (
     Along,
@@ -29,9 +30,9 @@ from pn2code.robot.commands import (
     Pose,
     ToolAction,
 )
-from pn2code.robot.executor import RobotExecutor, turned
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.fake import FakeBackend
-from pn2code.robot.parts import PartFault
+from pn2code.robot.part import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of

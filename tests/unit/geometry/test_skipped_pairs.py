@@ -19,7 +19,7 @@ from pn2code.geometry.pieces import Own, gaps, near
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Along, MoveExternal
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import translation

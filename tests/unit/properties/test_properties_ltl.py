@@ -19,7 +19,8 @@ from pn2code.properties.judge_ltl import (
     positions,
     some_path,
 )
-from pn2code.properties.ltl import Automaton, TooLargeError, automaton
+from pn2code.properties.ltl import Automaton, automaton
+from pn2code.properties.ltl_expansion import TooLargeError
 from pn2code.properties.meaning import TRUE, Atom, Fairness, Formula, Op
 from pn2code.properties.questions import expanded
 

@@ -19,7 +19,8 @@ from pn2code.robot.belts import stopping, told_to_run, until_stop
 from pn2code.robot.commands import Along, Handling, MoveExternal, ToolAction
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import Part, PartFault, Parts
+from pn2code.robot.part import Part, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of

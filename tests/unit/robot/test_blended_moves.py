@@ -10,9 +10,10 @@ import pytest
 from helpers.robot_cells import pose_mm, riveting_cell
 from pn2code.geometry.words import words
 from pn2code.geometry.zone_speeds import _Pace
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.blend import MOST_OFF, Blended, PassingLaw
 from pn2code.robot.commands import MoveLinear, Pose
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import Array, matrix_of

@@ -30,7 +30,7 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.parts import Part
+from pn2code.robot.part import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of

@@ -17,6 +17,7 @@ from helpers.robot_cells import nowhere, pose_mm
 from pn2code.diagnostics import Diagnostics
 from pn2code.replay.arrays import unpacked
 from pn2code.replay.cell import describe
+from pn2code.robot.active_motion import Motion, turned
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import (
@@ -29,7 +30,7 @@ from pn2code.robot.commands import (
     MoveJoint,
     MoveLinear,
 )
-from pn2code.robot.executor import Motion, RobotExecutor, turned
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load

@@ -15,12 +15,14 @@ import pytest
 from helpers.robot_cells import EXAMPLE, geometry, nowhere, pose_mm
 from helpers.tool_cell import TOML, placed
 from pn2code.diagnostics import Diagnostics
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Command, Handling, Measure, MoveAxes, MoveLinear, Pose
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.geometry import panel_bodies
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.parts import PartFault, Parts
+from pn2code.robot.part import PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import PanelConfig, RobotCell
 from pn2code.robot.scene import load
 from pn2code.robot.transforms import matrix_of

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import pose_mm, riveting_cell
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.commands import (
     Command,
     MoveAxes,
@@ -17,7 +18,7 @@ from pn2code.robot.commands import (
     MoveLinear,
     Pose,
 )
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.trajectories import LinearTrajectory
 from pn2code.robot.transforms import matrix_of, pose_of

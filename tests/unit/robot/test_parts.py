@@ -14,7 +14,8 @@ from helpers.carrying_cell import TOML
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Handling, Pose
-from pn2code.robot.parts import PartChange, PartFault, Parts
+from pn2code.robot.part import PartChange, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.scene import RobotCell, load
 from pn2code.robot.transforms import matrix_of
 from pn2code.run.handling import PartKeeper

@@ -18,7 +18,8 @@ from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Handling, MoveJoint, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.ground import Ground
-from pn2code.robot.parts import Part, PartFault, Parts
+from pn2code.robot.part import Part, PartFault
+from pn2code.robot.parts import Parts
 from pn2code.robot.payload import Rating
 from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell

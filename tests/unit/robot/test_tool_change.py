@@ -26,7 +26,8 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
-from pn2code.robot.parts import Part, PartFault, Parts, carried_to
+from pn2code.robot.part import Part, PartFault, carried_to
+from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones import ZoneWatch

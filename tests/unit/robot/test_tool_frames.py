@@ -12,9 +12,10 @@ import pytest
 from helpers.robot_cells import pose_mm
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.trajectories import LinearTrajectory

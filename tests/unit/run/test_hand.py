@@ -18,8 +18,8 @@ from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import ChannelSpec, SharedDirectory
 from pn2code.diagnostics import NOWHERE
+from pn2code.robot.active_motion import Motion
 from pn2code.robot.commands import Pose, Wait
-from pn2code.robot.executor import Motion
 from pn2code.robot.trajectories import Still
 from pn2code.run.choices import Choice, permitted
 from pn2code.run.hand import Hand, Said

@@ -6,7 +6,7 @@ import pytest
 
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
-from pn2code.semantics.game.enabling import GameError, about_files
+from pn2code.semantics.game.errors import GameError, about_files
 from pn2code.semantics.game.token_game import Game
 from pn2code.simulate.run import Failure
 

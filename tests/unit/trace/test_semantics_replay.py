@@ -15,7 +15,8 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.trace.parties import Parties
-from pn2code.trace.replay import ReplayResult, Rules, replay, replay_lines
+from pn2code.trace.replay import replay, replay_lines
+from pn2code.trace.replay_result import ReplayResult, Rules
 from pn2code.trace.token_game import header, occurrence, trace
 
 NET = """

@@ -98,7 +98,7 @@ def test_what_was_said_before_is_not_kept_as_nothing(
     kept: Callable[[], KeptAnswers], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Diagnostics list once what is said twice."""
-    monkeypatch.setattr("pn2code.robot.scene.FEW_RADIANS", 6.0)
+    monkeypatch.setattr("pn2code.robot.read_robot.FEW_RADIANS", 6.0)
     toml = TOML + ROBOT + "home = [0.1, -5.5, 5.5, 0.0, 5.5, 0.0]\n"
     path, d = cell(tmp_path / "cell", toml=toml), Diagnostics()
     for _ in range(2):

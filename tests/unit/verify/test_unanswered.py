@@ -11,7 +11,8 @@ from helpers import netbuilder
 from helpers.small_cell import NET, write
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
-from pn2code.robot_scripts.machine import Machine, analyse
+from pn2code.robot_scripts.analyse import analyse
+from pn2code.robot_scripts.machine import Machine
 from pn2code.verdict.opened import read
 from pn2code.verify.controller.control_answers import OTHERS, silent
 from pn2code.verify.controller.replies import Replies

@@ -35,8 +35,6 @@ from pn2code.lowering.expressions.values import (
 from pn2code.ml.core.terms import Constructor, Symbol
 from pn2code.ml.core.types import Type
 
-_INT_RANGE = (-(2**30), 2**30 - 1)
-_INTINF_RANGE = (-(2**63) + 1, 2**63 - 1)
 UNIT_VALUE = ir.Const(None, ir.UNIT)
 
 

@@ -10,16 +10,13 @@ Whatever fails ends it.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
-from pn2code.diagnostics import Diagnostics, Note, Origin, Span
-from pn2code.ml.core.terms import Exp, Lit, Pat, Symbol
+from pn2code.ml.core.terms import Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -32,11 +29,10 @@ from pn2code.net.flat import (
     Term,
 )
 from pn2code.net.no_match import no_match_places
-from pn2code.net.total import is_total
-from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
 from pn2code.semantics.evaluation.random import bindings_of
+from pn2code.semantics.game.errors import NoMatchError, one_line, running
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,
@@ -45,99 +41,9 @@ from pn2code.semantics.game.marking import (
     place_text,
     variable_text,
 )
-from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Timed, Value
+from pn2code.semantics.game.plan_order import PlanOrder, terms_of
+from pn2code.semantics.values.data import MlException, Timed, Value
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
-
-
-class GameError(Exception):
-    """The net did something wrong while it ran; it cannot go on.
-
-    Args:
-        message: lower case, without full stop, names in back-ticks.
-        origin: the net element.
-        span: the text in it, when that is known.
-    """
-
-    def __init__(self, message: str, origin: Origin, span: Span | None = None) -> None:
-        self.message = readable(message)
-        super().__init__(self.message)
-        self.origin = origin
-        self.span = span
-        self.is_unavailable = False
-        """Whether it applied what is in CPN Tools, but not here."""
-
-    def __str__(self) -> str:
-        """The message with its place."""
-        return f"{self.origin.location()}: {self.origin.describe()}: {self.message}"
-
-    def report(self, d: Diagnostics) -> None:
-        """As a diagnostic."""
-        d.error(
-            RUNTIME_ERROR,
-            self.message,
-            self.origin,
-            notes=self.notes(),
-            hint=about_files(self.message),
-        )
-
-    def notes(self) -> list[Note]:
-        """The text that raises it, if that is known, with its place."""
-        if self.span is None:
-            return []
-        return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
-
-
-def about_files(message: str) -> str:
-    """What to do about an exception of a file; nothing of others."""
-    if re.search(r"raised (?:the exception )?`(?:IO\.)?Io\b", message) is None:
-        return ""
-    return "the net has no files but those below the folder of `pn2code simulate --files DIR`"
-
-
-class NoMatchError(GameError):
-    """`Bind` was raised where it means that there is no binding (`net.no_match`)."""
-
-
-class GivenUpError(GameError):
-    """The token game gives up before it knows: it does not evaluate for longer, or with more memory."""
-
-
-class running:  # noqa: N801 - a context manager reads as a word
-    """What CPN ML raises while we do something becomes a GameError that names the element.
-
-    Args:
-        origin: the element.
-        doing: what, for the message.
-        part: which part of the element it is, if `origin` does not say it.
-    """
-
-    __slots__ = ("doing", "origin", "part")
-
-    def __init__(self, origin: Origin, doing: str, part: str = "") -> None:
-        self.origin = origin
-        self.doing = doing
-        self.part = part
-
-    def __enter__(self) -> None:
-        """Nothing: this is called for each evaluation."""
-
-    def __exit__(self, kind: object, raised: BaseException | None, trace: object) -> None:
-        """Raise the GameError."""
-        if raised is None:
-            return
-        origin = replace(self.origin, part=self.part) if self.part else self.origin
-        if isinstance(raised, MlException):
-            message = f"{self.doing} raised the exception `{raised}`"
-            raise GameError(message, origin, raised.span) from None
-        if isinstance(raised, MlUnavailable):
-            problem = GameError(f"{self.doing} cannot go on: {raised}", origin)
-            problem.is_unavailable = True
-            raise problem from None
-        if isinstance(raised, MlLimit | RecursionError):
-            raise GivenUpError(f"{self.doing} was given up: {raised}", origin) from None
-        if isinstance(raised, MemoryError):
-            why = "it needs more memory than there is"
-            raise GivenUpError(f"{self.doing} was given up: {why}", origin) from None
 
 
 class wanting(running):  # noqa: N801
@@ -183,19 +89,6 @@ Found = dict[int, Value]
 """A binding while it is searched for: `uid` of the symbol -> value."""
 
 
-@frozen
-class _Wants:
-    """What a transition wants.
-
-    Args:
-        arcs: its input arcs, by place, in order.
-        together: their inscriptions draw random numbers or the like: all are looked at, whatever the others want.
-    """
-
-    arcs: dict[int, list[FlatArc]]
-    together: bool
-
-
 class Enabling:
     """Enabling of the transitions of a net.
 
@@ -216,10 +109,7 @@ class Enabling:
             for s in variables(pattern)
             if s.uid in evaluator.globals
         }
-        self._guards: dict[int, list[list[int]]] = {}
-        self._effects = effects_of(net.program)
-        self._early_places: dict[int, list[list[int]]] = {}
-        self._wants: dict[int, _Wants] = {}
+        self._order = PlanOrder(effects_of(net.program))
         self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
         self._no_match: dict[int, frozenset[int]] = {}
 
@@ -275,7 +165,7 @@ class Enabling:
             yield found
             return
         if wanting:
-            for place in self._early(t)[position]:
+            for place in self._order.early(t)[position]:
                 if not self._suffices(t, marking, place, found):
                     return
         match t.plan[position]:
@@ -372,7 +262,7 @@ class Enabling:
 
     def _guards_hold(self, t: FlatTransition, position: int, found: Found) -> bool:
         """The guards that have just got their last variable: tested as early as possible."""
-        return all(self._guard(t, i, found) for i in self._guard_positions(t)[position])
+        return all(self._guard(t, i, found) for i in self._order.guards(t)[position])
 
     def _guard(self, t: FlatTransition, i: int, found: Found) -> bool:
         with running(t.origin, f"the guard of `{t.name}`", "guard"):
@@ -382,40 +272,6 @@ class Enabling:
                 if raised.name == "Bind":
                     return False
                 raise
-
-    def _guard_positions(self, t: FlatTransition) -> list[list[int]]:
-        """For each position in the plan, which guards have all their variables there but not earlier."""
-        if t.index not in self._guards:
-            own = set(t.variables)
-            open_guards = {i: variables(g) & own for i, g in enumerate(t.guards)}
-            positions: list[list[int]] = []
-            for bound in self._bound_after(t):
-                positions.append([i for i, needed in open_guards.items() if needed <= bound])
-                for i in positions[-1]:
-                    del open_guards[i]
-            assert not open_guards, "the plan binds all variables of the guards"
-            self._guards[t.index] = positions
-        return self._guards[t.index]
-
-    @staticmethod
-    def _bound_after(t: FlatTransition) -> list[set[Symbol]]:
-        """The variables that have values before the first step of the plan, and after each."""
-        bound: set[Symbol] = set()
-        after = [set(bound)]
-        for step in t.plan:
-            match step:
-                case BindTerm(arc, term):
-                    inscription = t.arcs[arc].inscription
-                    assert inscription is not None
-                    pattern = inscription.terms[term].pattern
-                    assert pattern is not None
-                    bound |= variables(pattern)
-                case BindEquation(_, pattern, _):
-                    bound |= variables(pattern)
-                case BindAll(symbol) | BindRandom(symbol):
-                    bound.add(symbol)
-            after.append(set(bound))
-        return after
 
     def _evaluate(self, exp: Any, found: Found) -> Any:
         return self.evaluator.evaluate(exp, found)
@@ -434,37 +290,10 @@ class Enabling:
 
     # --- demands ---------------------------------------------------------------------------------
 
-    def _early(self, t: FlatTransition) -> list[list[int]]:
-        """For each position in the plan, the places of which all that is wanted is known then, and not earlier."""
-        if t.index not in self._early_places:
-            own = set(t.variables)
-            order = self._bound_after(t)
-            positions: list[list[int]] = [[] for _ in order]
-            wants = self._wanted(t)
-            for place, arcs in wants.arcs.items():
-                terms = [x for a in arcs for x in _terms(a)]
-                texts = [e for x in terms for e in _texts(x)]
-                if wants.together or not all(map(is_total, texts)) or _is_found(t, place, terms):
-                    continue
-                needed = {s for e in texts for s in variables(e) & own}
-                positions[next(i for i, bound in enumerate(order) if needed <= bound)].append(place)
-            self._early_places[t.index] = positions
-        return self._early_places[t.index]
-
-    def _wanted(self, t: FlatTransition) -> _Wants:
-        if t.index not in self._wants:
-            arcs: dict[int, list[FlatArc]] = {}
-            for arc in t.arcs:
-                if arc.kind in (ArcKind.INPUT, ArcKind.BOTH) and arc.inscription is not None:
-                    arcs.setdefault(arc.place, []).append(arc)
-            texts = [e for own in arcs.values() for a in own for x in _terms(a) for e in _texts(x)]
-            self._wants[t.index] = _Wants(arcs, bool(self._effects.of(*texts)))
-        return self._wants[t.index]
-
     def _suffices(self, t: FlatTransition, marking: Marking, place: int, found: Found) -> bool:
         """Whether a place holds what the transition wants of it."""
-        arcs = self._wanted(t).arcs[place]
-        terms = [(arc, term) for arc in arcs for term in _terms(arc)]
+        arcs = self._order.wanted(t).arcs[place]
+        terms = [(arc, term) for arc in arcs for term in terms_of(arc)]
         try:
             demands = [d for arc, term in terms for d in self._term_demands(t, arc, term, found)]
         except NoMatchError:
@@ -488,7 +317,7 @@ class Enabling:
 
     def _is_held(self, t: FlatTransition, marking: Marking, binding: Binding) -> bool:
         """Whether all places hold what the transition wants; one that does not ends the question."""
-        wants = self._wanted(t)
+        wants = self._order.wanted(t)
         if wants.together:
             try:
                 return self._holds(marking, self.demands(t, binding))
@@ -606,7 +435,7 @@ class Enabling:
         for arc in self._inhibitors(t, marking):
             place = self.net.places[arc.place]
             tokens = place_text(self.colours, place.colset, marking.places[arc.place])
-            return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
+            return f"place `{place.name}` inhibits it: it holds {one_line(tokens)}"
         return None
 
     def why_guard_fails(self, t: FlatTransition, binding: Binding) -> str | None:
@@ -624,7 +453,7 @@ class Enabling:
                 return f"{text} is not in the colour set `{s.colset.name}` of variable `{s.name}`"
         for i, guard in enumerate(t.guards):
             if not self._guard(t, i, found):
-                return f"the guard `{_one_line(guard.span.text)}` is false"
+                return f"the guard `{one_line(guard.span.text)}` is false"
         return None
 
     def shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
@@ -635,7 +464,7 @@ class Enabling:
             d.count for d in demands if d.place == missing.place and d.value == missing.value
         )
         tokens = marking.places[missing.place]
-        held = _one_line(place_text(self.colours, c, tokens))
+        held = one_line(place_text(self.colours, c, tokens))
         text = f"place `{place.name}` lacks {wanted}`{readable(self.colours.text(c, missing.value))}: it holds {held}"
         if isinstance(tokens, TimedMultiSet):
             early = f" + {missing.early}" if missing.early else ""
@@ -676,25 +505,6 @@ class Enabling:
         return found
 
 
-def _terms(arc: FlatArc) -> tuple[Term, ...]:
-    """The summands of the inscription of an arc."""
-    return arc.inscription.terms if arc.inscription is not None else ()
-
-
-def _is_found(t: FlatTransition, place: int, terms: list[Term]) -> bool:
-    """Whether a step of the plan finds all that is wanted of a place: one token."""
-    if len(terms) != 1:
-        return False
-    (term,) = terms
-    found = any(isinstance(x, BindTerm) and t.arcs[x.arc].place == place for x in t.plan)
-    return found and isinstance(term.coefficient, Lit) and term.coefficient.value == 1
-
-
-def _texts(term: Term) -> list[Exp]:
-    """The expressions of a summand of an input arc."""
-    return [term.coefficient, term.value, *([] if term.delay is None else [term.delay])]
-
-
 def _patterns(t: FlatTransition) -> Iterator[Pat]:
     """All patterns of a transition's inscriptions."""
     for step in t.plan:
@@ -709,7 +519,3 @@ def _patterns(t: FlatTransition) -> Iterator[Pat]:
 def available(tokens: PlaceMarking, now: float) -> list[Value] | list[Timed]:
     """The tokens of a place that are available at a time."""
     return list(tokens) if isinstance(tokens, MultiSet) else tokens.available(now)
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())

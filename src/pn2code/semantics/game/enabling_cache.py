@@ -12,7 +12,8 @@ from collections.abc import Iterable
 
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, effects_of
-from pn2code.semantics.game.enabling import Enabling, GameError
+from pn2code.semantics.game.enabling import Enabling
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import Binding, Marking, PlaceMarking
 
 _EXAMINED = (ArcKind.INPUT, ArcKind.BOTH, ArcKind.INHIBITOR)

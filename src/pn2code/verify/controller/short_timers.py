@@ -25,7 +25,8 @@ from pn2code.diagnostics import Diagnostics, Note
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind, FlatTransition
-from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
+from pn2code.robot_scripts.machine import Machine, Outcome, Step
+from pn2code.robot_scripts.tokens import delayed_tokens
 from pn2code.verify.codes import SHORT_TIMER
 from pn2code.verify.controller.commands import lasts
 from pn2code.verify.controller.durations import Durations

@@ -42,7 +42,8 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import ArcKind, Form
 from pn2code.properties import meaning as m
-from pn2code.properties.ltl import TooLargeError, automaton
+from pn2code.properties.ltl import automaton
+from pn2code.properties.ltl_expansion import TooLargeError
 from pn2code.properties.questions import Questions, expanded
 
 

@@ -20,7 +20,8 @@ from pn2code.ml.core.types import BOOL, TFun, tuple_of
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatTransition, Form
 from pn2code.net.uses import NetVariables
-from pn2code.robot_scripts.machine import Machine, Step, analyse
+from pn2code.robot_scripts.analyse import analyse
+from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.robot_scripts.translate import awaited_first
 from pn2code.verify.controller.unsure import is_total
 

@@ -40,7 +40,7 @@ from pn2code.base.frozen import frozen
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking
 from pn2code.semantics.game.token_game import Game

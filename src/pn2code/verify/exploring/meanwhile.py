@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import Self
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.verify.exploring.covering import MOST_WORK, Covering, Search
 
 FROM_STATES = 5_000

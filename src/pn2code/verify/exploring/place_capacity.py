@@ -23,7 +23,7 @@ from pn2code.ir import nodes as ir
 from pn2code.lowering.nets.packing import colours
 from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.errors import GameError
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
 from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
