@@ -128,6 +128,18 @@ STAYS = {
         "  trans Stow\n",
         "  trans More\n    in Left : n\n    out Left : n + 1\n  trans Stow\n",
     ),
+    "another guard may raise an exception": (
+        "    guard [n > 0]\n",
+        "    guard [10 div m > 1, n > 0]\n    both Seen : m\n",
+    ),
+    "another guard may raise Overflow": (
+        "    guard [n > 0]\n",
+        "    guard [n > 0, m * m > 1]\n    both Seen : m\n",
+    ),
+    "another arc may raise an exception": (
+        "    out Tray\n",
+        "    out Tray\n    both Seen : half (10 div m)\n    both Tray : m`()\n    both Seen : m\n",
+    ),
     "it may be reset": ("  trans Stow\n", "  trans Stow\n    reset Left\n"),
 }  # fmt: skip
 
@@ -136,7 +148,7 @@ STAYS = {
 def test_what_stays_a_number(why: str, tmp_path: Path) -> None:
     old, new = STAYS[why]
     assert old in LINE
-    text = LINE.replace(old, new)
+    text = LINE.replace(old, new) + "  place Seen : INT = 1`0\n" * ("Seen" in new)
     if "SMALL" in new:
         text = text.replace("in Left : n", "in Left : s").replace("Left : n - 1", "Left : s - 1")
         text = text.replace("[n > 0]", "[s > 0]")

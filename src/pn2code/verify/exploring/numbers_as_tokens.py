@@ -28,7 +28,9 @@ the guards about it are true in the one exactly where there are tokens enough, o
 it from above are left out: the net that is made does all that the net does, and perhaps more; a bound of it shows that
 they are never false there, so it does no more. Each such place has a proven bound far below the greatest integer, so no
 sum raises an exception; constants raise none, as they are numbers. `n` has one value in a marking, and the steps that
-bind other variables keep their order, so the order of binding elements is the same.
+bind other variables keep their order, so the order of binding elements is the same. Whether there are tokens enough may
+be seen before anything else, and a number is looked at where its guard stands; so nothing else that such a transition
+works out while bindings are searched for may raise an exception (not even `Overflow`), or only the net would raise it.
 
 Of a counter that is taken for good the net that is made may keep tokens; but without the token of `is there` none of
 its transitions occurs, as in the net, so that these markings behave as the one without a counter does.
@@ -67,6 +69,7 @@ from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.structure import bounds
 from pn2code.structure.analysis import start_of
+from pn2code.verify.exploring.dependency import raises_nothing
 
 MOST = 10_000
 """Of a number that is written as tokens."""
@@ -181,7 +184,7 @@ class _Reader:
         for t in self.net.transitions:
             if any(a.place == place for a in t.arcs):
                 use = self._use(t, place)
-                if use is None:
+                if use is None or _may_raise(t, use.guards):
                     return None
                 found[t.index] = use
         return found if any(u.puts or u.becomes is not None for u in found.values()) else {}
@@ -310,6 +313,14 @@ class _Reader:
             if isinstance(found, int) and not isinstance(found, bool) and 0 <= found <= MOST:
                 return found
         return None
+
+
+def _may_raise(t: FlatTransition, apart: Collection[int]) -> bool:
+    """Whether an exception may be raised while bindings are searched for, but for these guards."""
+    terms = (term for a in t.arcs if a.inscription is not None for term in a.inscription.terms)
+    # Others may be negative.
+    are_constant = all(isinstance(term.coefficient, core.Lit) for term in terms)
+    return not are_constant or not raises_nothing(t, apart)
 
 
 def _is(e: core.Exp, n: core.Symbol) -> bool:
