@@ -296,9 +296,7 @@ def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         result = CliRunner().invoke(app, arguments)
         assert result.exit_code == 3
         said = " ".join(result.stdout.split())
-        assert (
-            "not known: the cell has more states than were looked at, as many as there is" in said
-        )
+        assert "not all is known: the cell has more states than were looked at, as many as" in said
         assert "`--set`" in said
     with monkeypatch.context() as fewer:
         fewer.setattr("pn2code.geometry.situations.MOST", 20)

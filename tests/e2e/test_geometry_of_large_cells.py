@@ -95,6 +95,21 @@ def test_where_the_other_net_is_too_large_as_well(tmp_path: Path) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=True)
     code, said = asked(cell, tmp_path / "runs", "--max-states", "5")
     assert code == 3 and "or as `--max-states` says" in said, said
+    assert "0 of 2 transitions" in said and "      yes  " not in said
+
+
+def test_what_parts_show_is_told_where_no_other_net_helps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A part of the cell shows a collision, with its run; what it does not show is not known."""
+    monkeypatch.setattr("pn2code.geometry.check.explore_wider", lambda *_: None)
+    cell = packing(tmp_path / "cell", guarded=False)
+    code, said = asked(cell, tmp_path / "runs", "--max-states", "130")
+    assert code == 1 and "NO: `Top.Robot1.Visit1` and `Top.Robot2.Visit2`" in said, said
+    assert "What is wrong was sought in parts of it, of 130 and 130 and 130 and 130 states" in said
+    assert "not known  each move can be done" in said
+    (trace,) = (tmp_path / "runs").iterdir()
+    assert CliRunner().invoke(app, ["replay", str(trace), str(cell)]).exit_code == 0
 
 
 def test_a_sensor_that_sees_is_left_to_the_cell_itself(

@@ -25,6 +25,7 @@ from tools.reduction_cells import asked, closed, files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
+from tools.reduction_cells.numbered import counters
 from tools.reduction_cells.peers import peers
 from tools.reduction_cells.registers import registers
 from tools.reduction_cells.shops import shop
@@ -61,6 +62,7 @@ MADE: Mapping[str, Callable[[Random], tuple[str, str]]] = {
     "stations": stations,
     "talks": talks,
     "registers": registers,
+    "counters": counters,
 }
 
 

@@ -16,7 +16,14 @@ from typing import Any
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.controller.by_counts import Abstract, abstract, questions
+from pn2code.verify.controller.by_counts import (
+    Abstract,
+    abstract,
+    memory_of_numbers,
+    questions,
+    with_memory,
+    with_tokens,
+)
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.exploring.counts import Counts, Limit
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -53,12 +60,27 @@ class Limited:
     plan: Plan
     made: Abstract
     program: Generated
+    known: frozenset[int]
+    """places that are the same in the net of which this one was made"""
+    more_memory: int
+    """bytes that a firing may need more in that"""
 
     @staticmethod
     def of(partition: Partition, plan: Plan) -> Limited | None:
-        """Of a cell; None: no place gets a limit."""
-        made = abstract(partition, plan, least=LEAST)
-        return None if made is None else Limited(plan, made, Generated())
+        """Of a cell, whose counters are written as tokens; None: no place gets a limit."""
+        cell = with_tokens(partition, plan)
+        made = abstract(cell, plan, least=LEAST)
+        if made is None:
+            return None
+        own, count = partition.net.places, len(made.running.net.places)
+        is_longer = len(cell.net.places) > len(own)
+        known = frozenset(
+            p
+            for p in range(len(own) if is_longer else count)
+            if p >= len(own) or own[p].colset == cell.net.places[p].colset
+        )
+        more = memory_of_numbers(partition.net, cell.net)
+        return Limited(plan, made, Generated(), known, more)
 
     def judged(self, whole: Exploration, counts: Counter[str]) -> Iterator[str]:
         """What is wrong."""
@@ -136,11 +158,11 @@ class Limited:
             if its and not mine:
                 yield f"transition {t} occurs"
         for p, (a, b) in enumerate(zip(found.bounds or (), whole.bounds or (), strict=True)):
-            if p not in limited and (a.upper < b.upper or a.lower > b.lower):
+            if p in self.known - limited and (a.upper < b.upper or a.lower > b.lower):
                 yield f"place {p} holds {b.lower} to {b.upper}, not {a.lower} to {a.upper}"
         if whole.dead_count and not found.dead_count:
             yield "there are dead markings"
-        mine, its = found.arena or {}, whole.arena or {}
+        mine, its = with_memory(found.arena, self.more_memory) or {}, whole.arena or {}
         if any(mine.get(part, 0) < size for part, size in its.items()):
             yield f"firings need memory: {its}, not {mine}"
 

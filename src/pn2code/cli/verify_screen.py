@@ -17,7 +17,7 @@ from pn2code.cli.verify_answers import (
 from pn2code.cli.verify_closing import NOTE, closing, durations_of
 from pn2code.cli.verify_rows import WIDTH
 from pn2code.cli.verify_run import run_lines
-from pn2code.cli.verify_sizes import as_it_runs, counted_remarks, sizes_of
+from pn2code.cli.verify_sizes import as_it_runs, counted_remarks, crowd_of, sizes_of
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import outcome
 
@@ -35,7 +35,7 @@ def screen(said: Said) -> str:
     if not said.found.complete:
         partial = f"PARTIAL: {outcome.header(said.net, said.found, said.counts)}"
         lines += [*textwrap.wrap(partial, WIDTH), ""]
-    lines += sizes_of(said)
+    lines += [*sizes_of(said), *crowd_of(said)]
     remarks = list(as_it_runs(said))
     items = tuple(items_of(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")

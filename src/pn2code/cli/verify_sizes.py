@@ -71,6 +71,13 @@ def _of_counted(said: Said, known: Known) -> Iterator[str]:
         yield from row("Transitions not seen", _listed(others, len(net.transitions)))
 
 
+def crowd_of(said: Said) -> Iterator[str]:
+    """What makes a cell so large that not all of its states were seen."""
+    crowd = said.control.crowd if said.control is not None else None
+    if crowd is not None:
+        yield from (line for name, what in crowd.lines() for line in row(name, what))
+
+
 def growing_lines(net: FlatNet, found: Exploration) -> Iterator[str]:
     """What may be the reason that there is no end of markings."""
     growing = found.growing()

@@ -22,7 +22,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_held
-from pn2code.geometry.large import MOST_OF_PART, answer_of
+from pn2code.geometry.large import MOST_OF_PART, answer_of, sought_in
 from pn2code.geometry.look import Look, Options
 from pn2code.geometry.words import reason
 from pn2code.robot import scene
@@ -114,15 +114,21 @@ def examine(
             if graph is None:
                 return None
             wider = None
-        if is_open and not graph.arcs:
+        if is_open and not graph.arcs and graph.why not in ("states", "memory"):
             return Geometry((), reason(graph.why, graph.raised))
 
-    def part(order: Order) -> CellGraph | None:
+    def part(order: Order, shuffle: int) -> CellGraph | None:
         most = min(limits.max_states or MOST_OF_PART, MOST_OF_PART)
         stage(f"exploring {most:,} states of the cell ...")
         some = replace(limits, max_states=most, order=order)
         return explore_cell(
-            partition, opened.storage, some, Diagnostics(), opened.initial, part=True
+            partition,
+            opened.storage,
+            some,
+            Diagnostics(),
+            opened.initial,
+            part=True,
+            shuffle=shuffle,
         )
 
     def explore(changed: Partition) -> CellGraph | None:
@@ -138,7 +144,15 @@ def examine(
     for name, cell in cells:
         looking = Look(graph, cell, options, name)
         try:
-            layout_ = looking.answer() if wider is None else answer_of(looking, wider, part)
+            layout_: Layout | None
+            if wider is not None and wider.arcs:
+                layout_ = answer_of(looking, wider, part)
+            elif graph.arcs:
+                layout_ = looking.answer()
+            else:
+                layout_ = sought_in(looking, reason(graph.why), part)
+            if layout_ is None:
+                return Geometry((), reason(graph.why))
             found.append((layout_, cell))
         finally:
             looking.close()

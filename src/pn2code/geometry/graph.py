@@ -210,13 +210,13 @@ class CellGraph:
 def explore_cell(
     partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
     initial: str | None = None, program: CellProgram | None = None, *, part: bool = False,
-    most: int | None = None, say: Say = silent,
+    most: int | None = None, shuffle: int = 0, say: Say = silent,
 ) -> CellGraph | None:  # fmt: skip
     """Explores the cell as it runs; None after an error that was reported.
 
     `program` is what somebody has compiled of the same cell. `part`: of a cell that was not seen to its end a part is
-    wanted; else nothing is, but why. `most`: states, where `limits` do not say it; else `MOST_STATES`. `say`
-    hears how far it is.
+    wanted; else nothing is, but why; `shuffle`: in which order of successors, depth first. `most`: states, where
+    `limits` do not say it; else `MOST_STATES`. `say` hears how far it is.
 
     Raises:
         NotModelledError: it cannot be said what its programs do.
@@ -247,6 +247,7 @@ def explore_cell(
             predicates=program.predicates,
             graph=file,
             part=part,
+            shuffle=shuffle,
             questions="".join(f"{line}\n" for line in running.lines(first=True)),
             evidence=Path(folder),
             quick=True,

@@ -112,6 +112,7 @@ class Look:
         self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.moving)
         self.runs: dict[tuple[Situations, int, tuple[int, ...]], Run] = {}
+        self._numbered = 0
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -456,9 +457,9 @@ class Look:
             return None
         key = (found, met.situation, met.elements)
         if key not in self.runs and len(self.runs) < MOST_RUNS:
-            number = len(self.runs) + 1
+            self._numbered += 1
             layout = f"-{self.layout}" if self.layout else ""
-            name = f"{self.options.stem}.geometry{layout}-{number}.trace.jsonl"
+            name = f"{self.options.stem}.geometry{layout}-{self._numbered}.trace.jsonl"
             self.runs[key] = write(
                 found.graph,
                 found.path_to(met.situation),
@@ -467,6 +468,15 @@ class Look:
                 self.options.initial,
             )
         return self.runs.get(key)
+
+    def keep_runs(self, rows: Iterable[Move | Pair | Open]) -> None:
+        """Removes the traces of all others."""
+        kept = {row.run for row in rows if row.run is not None}
+        for key, run in [*self.runs.items()]:
+            if run not in kept:
+                del self.runs[key]
+                if run.file is not None:
+                    run.file.unlink(missing_ok=True)
 
 
 def _how_bad(row: Move) -> tuple[int, float]:

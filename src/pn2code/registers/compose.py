@@ -34,11 +34,9 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition, Role
+from pn2code.net.register_places import MADE
 from pn2code.registers.recognised import Register, refuse, registers
 from pn2code.robot_scripts.analyse import analyse
-
-_ID = "register-"
-"""What the ids of elements begin with that are added."""
 
 
 @frozen
@@ -295,7 +293,7 @@ class _Composer:
                     page=made.page,
                     instance=made.instance,
                     instance_number=made.number,
-                    id=f"{_ID}{t.index}",
+                    id=f"{MADE}{t.index}",
                     origin=made.origin,
                     role=made.role,
                 )
@@ -309,7 +307,7 @@ class _Composer:
                 page=self.places[p.index].page,
                 instance=self.places[p.index].instance,
                 instance_number=self.places[p.index].number,
-                id=f"{_ID}{p.index}p",
+                id=f"{MADE}{p.index}p",
                 origins=(self.places[p.index].origin,),
             )
             if p.index in self.places

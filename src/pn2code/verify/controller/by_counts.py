@@ -38,6 +38,7 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
 from pn2code.properties.questions import ENDLESS, Questions
 from pn2code.verify.controller import diamonds
 from pn2code.verify.controller.by_turns import Looked, group, loosened
@@ -50,6 +51,7 @@ from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import REACHED, Limits, Order
+from pn2code.verify.exploring.numbers_as_tokens import numbers_as_tokens
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
@@ -164,6 +166,48 @@ def abstract(
     return Abstract(running, made.counts, made.turns, made.ranking, made.sizes, tuple(properties))
 
 
+def with_tokens(
+    partition: Partition,
+    plan: Plan,
+    kept: Sequence[int] = (),
+    properties: Sequence[Stated] = (),
+) -> Partition:
+    """The cell with those counters of its supervisor as tokens of which nothing is asked (`numbers_as_tokens`)."""
+    others = {*kept, *plan.capacities, *partition.final_places}
+    others |= {c.place for c in partition.channels} | {x.place for x in partition.inputs}
+    others |= {place for p in plan.properties.predicates for _, place in p.places}
+    others |= {place for x in properties for place in (*x.places, *x.exact)}
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        if owner != SUPERVISOR:
+            others |= {a.place for a in t.arcs}
+    among = {p.index for p in partition.net.places} - others
+    made = numbers_as_tokens(partition.net, plan.storage, among)
+    owners = (*partition.place_owner, *[SUPERVISOR] * made.added)
+    return replace(partition, net=made.net, place_owner=owners)
+
+
+MOVED = 256
+"""Bytes that a firing may need to take and put a number, and not for packed tokens: two moves with values."""
+
+
+def memory_of_numbers(net: FlatNet, written: FlatNet) -> int:
+    """So many bytes more than with counters as tokens a firing may need with the numbers of the net.
+
+    Where several bindings are looked at, there is room for twice as much, as there is for places that are packed
+    otherwise in what is deployed (`arena`).
+    """
+    counters = {p.index for p in net.places if p.colset != written.places[p.index].colset}
+    touched = (len(counters & {a.place for a in t.arcs}) for t in net.transitions)
+    return MOVED * max(touched, default=0)
+
+
+def with_memory(arena: Mapping[str, int] | None, more: int) -> Mapping[str, int] | None:
+    """What firings need, if they need any, with so much more."""
+    if arena is None or not arena["firing"]:
+        return arena
+    return {**arena, "firing": arena["firing"] + more}
+
+
 def look(
     partition: Partition,
     plan: Plan,
@@ -186,8 +230,12 @@ def look(
     """
     known = part.answers[: len(plan.properties.properties)]
     properties = _open_properties(partition, plan, known)
-    made = None
+    made, more_memory = None, 0
     if properties is not None:
+        net = partition.net
+        partition = with_tokens(partition, plan, options.whole, [x for _, x in properties])
+        more_memory = memory_of_numbers(net, partition.net)
+        properties = _open_properties(partition, plan, known) or []
         made = abstract(partition, plan, options.whole, [x for _, x in properties])
     if made is None or properties is None:
         return None
@@ -236,6 +284,7 @@ def look(
     longest, firings = lengths
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
+    found = replace(found, arena=with_memory(found.arena, more_memory))
     looked = Looked(running, _bounded(found, made, plan), None)
     told: dict[int, Mapping[str, Any]] = {i: {**row, "part": True} for i, row in enumerate(known)}
     for (i, x), row in zip(properties, rows, strict=False):

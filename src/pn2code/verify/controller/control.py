@@ -63,6 +63,7 @@ from pn2code.verify.controller.control_types import (
     Plan,
     WrittenGraph,
 )
+from pn2code.verify.controller.crowd import Crowd, crowd
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.hunts import hunt
 from pn2code.verify.controller.kept_silence import kept_silence
@@ -387,8 +388,18 @@ def examine(
             reduced_orders=other is not None,
             counted_orders=other is not None and other[0].is_counted,
             program=program,
+            crowd=_crowd(program.running, plan, limits, options, found),
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
+
+
+def _crowd(
+    running: Running, plan: Plan, limits: Limits, options: ExploreOptions, found: Exploration
+) -> Crowd | None:
+    """What makes the states so many, where that is why not all were seen."""
+    if found.complete or found.why not in REACHED:
+        return None
+    return crowd(running, plan.storage, limits, options)
 
 
 def _hunted(

@@ -14,6 +14,7 @@ from pn2code.net.engine_names import EngineNames
 from pn2code.net.predicate import Predicate
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
+from pn2code.verify.controller.crowd import Crowd
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.running import Running
@@ -263,6 +264,7 @@ class Control:
         program: of the whole cell as it runs; None: there is none.
         reduced_orders: whether what is said of the orders of firing is from such a space, though `found` is not;
             `counted_orders`: from one of `by_counts`.
+        crowd: what makes its states so many; None: all were seen, or that was not looked at.
     """
 
     partition: Partition
@@ -280,6 +282,7 @@ class Control:
     program: CellProgram | None = None
     reduced_orders: bool = False
     counted_orders: bool = False
+    crowd: Crowd | None = None
 
     @property
     def is_counted(self) -> bool:
@@ -357,4 +360,5 @@ class Control:
             "arcs": found.arcs if found else 0,
             "bounds": bounds,
             "dead_transitions": dead,
+            "crowd": None if self.crowd is None else self.crowd.row(),
         }

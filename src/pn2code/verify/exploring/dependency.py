@@ -53,7 +53,7 @@ these nets are refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import field
 
 from pn2code.base.frozen import frozen, record
@@ -443,18 +443,19 @@ def _reach(t: FlatTransition, effects: Effects) -> _Reach:
     )
 
 
-def raises_nothing(t: FlatTransition) -> bool:
-    """Whether no exception is raised while bindings are searched for, whatever the tokens are."""
+def raises_nothing(t: FlatTransition, apart: Collection[int] = ()) -> bool:
+    """Whether no exception is raised while bindings are searched for, whatever the tokens are; `apart`: see below."""
     drawn = (s.symbol.colset for s in t.plan if isinstance(s, BindAll | BindRandom))
     if not all(c is not None and c.resolved.kind in _LISTED for c in drawn):
         return False  # what decides whether a value belongs to a subset may raise one
-    equations = (s.value for s in t.plan if isinstance(s, BindEquation))
-    terms = (
-        e
-        for a in t.arcs
-        if a.inscription is not None and a.kind in _TAKING
-        for term in a.inscription.terms
-        for e in (term.coefficient, term.value)
-        if e is not None
-    )
-    return all(map(is_total, (*t.guards, *equations, *terms)))
+    return all(map(is_total, searched(t, apart)))
+
+
+def searched(t: FlatTransition, apart: Collection[int] = ()) -> Iterator[core.Exp]:
+    """What is worked out while bindings are searched for, but for some guards (by their numbers)."""
+    yield from (g for i, g in enumerate(t.guards) if i not in apart)
+    yield from (s.value for s in t.plan if isinstance(s, BindEquation) and s.guard not in apart)
+    for a in t.arcs:
+        if a.inscription is not None and a.kind in _TAKING:
+            for term in a.inscription.terms:
+                yield from (term.coefficient, term.value)

@@ -29,6 +29,7 @@ from pn2code.verify.exploring.counted import MOST_STATES, SOON, Counted, counted
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.numbers_as_tokens import numbers_as_tokens
 from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Exploration, Known
 from pn2code.verify.exploring.turns import turns
@@ -86,6 +87,9 @@ def look(
         options: who is told of the progress, and who may interrupt.
         final: places one of which is to hold a token in each dead marking.
     """
+    # Transitions keep their numbers, and nothing is asked of places but those that are final.
+    among = {p.index for p in net.places}.difference(final)
+    net = numbers_as_tokens(net, storage, among).net
     made = _counted(net, storage, final)
     if made is None:
         return None

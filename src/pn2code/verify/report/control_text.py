@@ -46,6 +46,8 @@ def looked_at(control: Control) -> Iterator[str]:
     elif found is not None:
         how = ", of the reduced space (docs/reductions.md)" if control.reduced else ""
         yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs{how}."
+    if control.crowd is not None:
+        yield from (f"{name} {what}" for name, what in control.crowd.lines())
     differing = [*differences(control)]
     yield from (what for _, what in differing)
     if differing:
