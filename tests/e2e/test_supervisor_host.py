@@ -986,9 +986,19 @@ def test_a_net_without_a_cell_runs_by_itself(built: Path, tmp_path: Path) -> Non
     assert done.returncode == 0, done.stderr
     assert "Top.Done" in done.stdout
     assert "Top.Robot.Do  2" in done.stdout  # the net's own initial marking: two orders
-    done = run(built, tmp_path, "--max-firings", "2", program="alone")
-    assert done.returncode == 0
-    assert "stopped after 2 firings" in done.stdout
+
+
+def test_a_net_without_a_cell_that_is_cut_has_not_finished(built: Path, tmp_path: Path) -> None:
+    """Neither on the screen nor in the trace; with as many firings as there are it has, and nothing is enabled."""
+    whole = run(built, tmp_path, program="alone").stdout
+    count = int(whole.removeprefix("fired ").partition(" ")[0])
+    trace = tmp_path / "t.jsonl"
+    for most, why in ((2, "no end after 2 firings"), (count, "finished")):
+        done = run(built, tmp_path, f"--max-firings={most}", f"--trace={trace}", program="alone")
+        assert done.returncode == 0
+        assert ("transitions are still enabled" in done.stdout) == (most == 2)
+        assert json.loads(trace.read_text().splitlines()[-1])["why"] == why
+    assert done.stdout == whole
 
 
 # --- the command line ---

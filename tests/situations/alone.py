@@ -112,3 +112,4 @@ def nets_without_a_cell(lab: Lab) -> None:
         done.code == 0
         and "stopped after 5 firings, transitions are still enabled (--max-firings N" in done.out
     )
+    assert "still enabled" not in lab.run(whole, "--max-firings", "1").out

@@ -68,7 +68,7 @@ typedef struct sup {
     uint64_t *fired_of; /* per transition */
     bool stopped;
     sup_exit_t exit_code;
-    char reason[1024]; /* why it stopped */
+    char reason[1024]; /* why it stopped, or went no further; empty: it has finished */
 } sup_t;
 
 /* Records why the program stops; the first reason counts. Always false, for `return`. */
@@ -84,6 +84,10 @@ void sup_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 bool sup_stop_error(sup_t *sup, const char *doing);
 
 /* --- supervisor_play.c --- */
+
+/* Looks for the first enabled transition of the owner (-1: of anybody) in the documented order, and keeps its binding in
+ * `sup->binding`. Returns 1 when there is one, 0 when there is none, -1 after an error. */
+int sup_find_one(sup_t *sup, int32_t owner, uint32_t *transition);
 
 /* Fires the first enabled transition of the owner (-1: of anybody) in the documented order. Returns 1 when one fired, 0
  * when none is enabled, -1 when the program has to stop. */

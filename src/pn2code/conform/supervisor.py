@@ -3,10 +3,10 @@ and the marking that it comes to are those of the net.
 
     report = explore(partition, game, probe)
 
-First the closed net is explored for what the supervisor may come to see (`sights.py`). Then the program is led through
-all of that. From each sight either the others' messages are published as real ones are, or the supervisor goes round
-its cycle: the program itself, and beside it the scheme in the token game. Files are read as a robot reads them: with
-session, number and checksum. Sights are visited depth first: the program's state is a process that waits.
+First the closed net is explored for what the supervisor may come to see (`observations.py`). Then the program is led
+through all of that. From each sight either the others' messages are published as real ones are, or the supervisor goes
+round its cycle: the program itself, and beside it the scheme in the token game. Files are read as a robot reads them:
+with session, number and checksum. Sights are visited depth first: the program's state is a process that waits.
 """
 
 from __future__ import annotations

@@ -203,9 +203,9 @@ class _Writer:
         value, form = arc.inscription.value, arc.inscription.form
         if form in (Form.TIMED_TOKEN, Form.TIMED_MULTISET):
             raise _NotSymmetricError("it has time")
-        term = self.value(value, c) if form is Form.TOKEN else self.sum(value, c)
-        if form is Form.TOKEN:
-            term = _numberof(1, term)
+        term = _numberof(1, self.value(value, c)) if form is Form.TOKEN else self.sum(value, c)
+        if not term:
+            return
         label = _structure("hlinscription", term)
         if arc.kind in (ArcKind.INPUT, ArcKind.BOTH):
             yield element("arc", label, source=there, target=here)
@@ -293,9 +293,11 @@ class _Writer:
             return None
 
     def sum(self, e: Exp, c: Colset) -> str:
-        """A multi-set."""
+        """A multi-set; "": it is empty, for which PNML has no term."""
         fixed = self.known(e)
         if fixed is not None:
+            if not all(self.colours.legal(c, v) for v in fixed):
+                raise _NotSymmetricError(f"`{_shown(e)}` is not in `{c.name}`")
             return self.multiset(c, MultiSet.of(fixed))
         match e:
             case Sequence((only,)):
@@ -303,16 +305,23 @@ class _Writer:
             case Apply(Builtin("Ms.++"), RecordExp((("1", a), ("2", b)))):
                 return _sum([self.sum(a, c), self.sum(b, c)])
             case Apply(Builtin("Ms.--"), RecordExp((("1", a), ("2", b)))):
-                return _nested("subtract", [self.sum(a, c), self.sum(b, c)])
+                return self.difference(a, b, c)
             case Apply(Var(symbol), RecordExp((("1", a), ("2", b)))) if symbol in self.minus:
-                return _nested("subtract", [self.sum(a, c), self.sum(b, c)])
+                return self.difference(a, b, c)
             case Apply(Builtin("Ms.`"), RecordExp((("1", n), ("2", v)))):
                 return _numberof(self.count(n), self.value(v, c))
             case Apply(Builtin("Ms.**"), RecordExp((("1", n), ("2", m)))):
-                return _numberof(self.count(n), self.sum(m, c))
+                times, inner = self.count(n), self.sum(m, c)
+                return _numberof(times, inner) if inner else ""
             case ListExp(items) if items:
                 return _sum([_numberof(1, self.value(x, c)) for x in items])
         raise _NotSymmetricError(f"`{_shown(e)}` is no sum of values")
+
+    def difference(self, a: Exp, b: Exp, c: Colset) -> str:
+        first, second = self.sum(a, c), self.sum(b, c)
+        if second and not first:
+            raise _NotSymmetricError(f"`{_shown(b)}` is taken from nothing")
+        return _nested("subtract", [first, second]) if second else first
 
     def count(self, e: Exp) -> int:
         n = self.known(e)
@@ -447,9 +456,7 @@ class _Writer:
                 ]
                 return fitting[0] if fitting else None
         used = [s.colset for s in variables(e) if s.colset is not None]
-        if len(used) == 1:
-            return used[0]
-        return None
+        return used[0] if len(used) == 1 and used[0].type == e.type else None
 
     def declarations(self) -> str:
         """`<declaration>`."""
@@ -491,7 +498,8 @@ def _nested(tag: str, terms: list[str], *, always: bool = False) -> str:
 
 
 def _sum(terms: list[str]) -> str:
-    return _nested("add", terms)
+    some = [t for t in terms if t]
+    return _nested("add", some) if some else ""
 
 
 def _numberof(n: int, term: str) -> str:

@@ -145,10 +145,13 @@ class _Checker:
         self.context.scope.files[x.name] = x
 
     def const(self, x: t.Const) -> None:
+        before = len(self.d.errors)
         found = type_of(x.value, self.context.scope)
         if found is None:
             return
         self.context.scope.values[x.name] = found
+        if len(self.d.errors) > before:  # a part of it is ill-typed, so that it has no value
+            return
         try:
             self.context.constants[x.name] = evaluate(
                 x.value, ConstantsOnly(self.context.constants)

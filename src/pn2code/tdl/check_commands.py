@@ -30,10 +30,10 @@ def check_command(
             elif value is not None:
                 _speed(c, motion, value)
         case t.WaitTime(duration) | t.Tool(_, duration):
-            c.expect(duration, Type.TIME, "the duration")
-            known = c.known(duration)
-            if known is not None and known < 0:
-                c.d.error(codes.SPEED, "the duration is negative", duration.span)
+            if c.expect(duration, Type.TIME, "the duration"):
+                known = c.known(duration)
+                if known is not None and known < 0:
+                    c.d.error(codes.SPEED, "the duration is negative", duration.span)
         case t.Sense(_, target):
             found = c.target(target)
             if found not in (None, Type.INT, Type.REAL, Type.BOOL, Type.STRING):

@@ -52,10 +52,10 @@ class Context:
     assigned: set[str] = field(default_factory=set)
 
     def known(self, e: t.Expression) -> float | None:
-        """The number an expression is, when constants alone decide it."""
+        """The number a well-typed expression is, when constants alone decide it."""
         try:
             value = evaluate(e, ConstantsOnly(self.constants))
-        except (ScriptError, AttributeError, TypeError, KeyError):  # ill-typed: reported already
+        except ScriptError:
             return None
         return float(value) if isinstance(value, int | float) else None
 
@@ -92,10 +92,11 @@ class Context:
         self.expect(e, Type.BOOL, "the condition")
 
     def expect(self, e: t.Expression, wanted: Type, what: str) -> bool:
-        """Whether an expression is of a type; if it is of another one, that is said."""
+        """Whether an expression is well-typed and of a type; if not, that is said."""
+        before = len(self.d.errors)
         found = type_of(e, self.scope)
         if found is None or fits(found, wanted):
-            return found is not None
+            return len(self.d.errors) == before
         self.d.error(
             type_code(found, wanted),
             f"{what} must be of type `{wanted}`, but this is `{found}`",

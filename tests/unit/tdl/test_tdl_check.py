@@ -96,6 +96,12 @@ ERRORS = [
         "17:11 error[tdl-unit] `x` of a pose must be of type `length`, but this is `int`",
     ),
     ("x := min(1 mm, 2)", "17:6 error[tdl-unit] `min` cannot be applied: `length` and `int`"),
+    # ill-typed inside what has a type: it has no value
+    ("wait ceil()", "17:6 error[tdl-arguments] `ceil` takes 1 arguments, but 0 are given"),
+    (
+        'wait pose(0 mm, "a", 0 mm, 0 deg, 0 deg, 0 deg).y / 1 mm/s',
+        "17:17 error[tdl-type] `y` of a pose must be of type `length`, but this is `string`",
+    ),
     # files
     ("clear nothing", "17:7 error[tdl-unknown-file] file `nothing` is not declared"),
     ("wait until filled(nothing)", "17:19 error[tdl-unknown-file] file `nothing` is not declared"),
@@ -257,6 +263,10 @@ DECLARATIONS = [
     (
         "var n : int := 1 const c = n",
         ["1:38 error[tdl-constant] the value of constant `c` is not known: `n` is not a constant declared before"],
+    ),
+    (
+        'const c = pose(0 mm, "a", 0 mm, 0 deg, 0 deg, 0 deg)',
+        ["1:32 error[tdl-type] `y` of a pose must be of type `length`, but this is `string`"],
     ),
     ("const c = 1 div 0", ["1:21 error[tdl-constant] the value of constant `c` is not known: division by zero"]),
     ("var n : int := 1 mm", ["1:26 error[tdl-unit] the value of `n` must be of type `int`, but this is `length`"]),

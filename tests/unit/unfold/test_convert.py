@@ -78,6 +78,27 @@ def test_symmetric_net_and_back(tmp_path: Path) -> None:
     assert edges(first) == edges(second)
 
 
+def test_empty_inscriptions_and_back(tmp_path: Path) -> None:
+    """PNML has no term for no tokens: such an arc is left out, and such a part of a sum."""
+    text = """
+        net N
+          standard
+          colset CH = with red | green;
+          var c: CH;
+          page Top
+            place A : CH = 2`red
+            place B : CH
+            place C : CH
+            trans T
+              in A : 1`c ++ (empty -- empty)
+              in B : 3 ** empty
+              out B : if false then 1`red else empty
+              out C : (1`c -- empty) ++ empty
+    """
+    net = cpn_net(text)
+    assert edges(graph(symmetric(net, tmp_path))) == edges(graph(net))
+
+
 def test_functions_that_turn_values_round_become_successors() -> None:
     d = Diagnostics()
     text = pnml_symmetric.emit(cpn_net(COLOURED), d, title="net")
@@ -145,6 +166,9 @@ def test_symmetric_net_for_cpn_tools(tmp_path: Path) -> None:
         (("trans Hear", "trans Hear priority 10"), "transition `Top.Say`"),
         (("trans Hear", "trans Hear delay @+3"), "transition `Top.Hear`"),
         (("n >= 2", "n mod 2 = 0"), "the guard of `Top.Say`"),
+        (("n >= 2", "3 = (case c of red => 3 | _ => 1)"), "the guard of `Top.Say`"),
+        (("out A : (next c, up n)", "out A : 1`(red, 9)"), "arc `Turn` -> `A`"),
+        (("out A : (next c, up n)", "out A : empty -- 1`(c, n)"), "arc `Turn` -> `A`"),
         (("1`(next c)", "n`(next c)"), "arc `Other` -> `C`"),
     ],
 )

@@ -222,25 +222,35 @@ static bool wait_until(sup_t *sup, uint64_t begin, double t)
     return true;
 }
 
+/* After as many firings as are allowed: whether anything is enabled still, which is said; true as well after an error. */
+static bool goes_beyond(sup_t *sup)
+{
+    uint32_t transition = 0U;
+    const bool is_spent = (sup->fired >= sup->options.max_firings);
+    const int found = is_spent ? sup_find_one(sup, -1, &transition) : 0;
+    if (found > 0) {
+        if (sup->cell->owner >= 0) {
+            (void)sup_stop(sup, SUP_EXIT_MODEL, "no end after %" PRIu64 " firings (--max-firings N allows more)",
+                           sup->fired);
+        } else { /* no mistake: a net may go on for ever; but its trace must not say that it has finished */
+            (void)snprintf(sup->reason, sizeof sup->reason, "no end after %" PRIu64 " firings", sup->fired);
+            sup_say(sup, 1,
+                    "stopped after %" PRIu64 " firings, transitions are still enabled (--max-firings N allows more)",
+                    sup->fired);
+        }
+    }
+    return found != 0;
+}
+
 void sup_run_alone(sup_t *sup)
 {
     const uint64_t begin = pn_port_now();
-    const bool cut_is_error = (sup->cell->owner >= 0);
     bool on = note_messages(sup); /* and which channels are occupied */
     while (on) {
         double next = 0.0;
         on = play_all(sup);
-        if (on && (sup->fired >= sup->options.max_firings)) {
+        if (on && goes_beyond(sup)) {
             on = false;
-            if (cut_is_error) {
-                (void)sup_stop(sup, SUP_EXIT_MODEL, "no end after %" PRIu64 " firings (--max-firings N allows more)",
-                               sup->fired);
-            } else {
-                sup_say(sup, 1,
-                        "stopped after %" PRIu64
-                        " firings, transitions are still enabled (--max-firings N allows more)",
-                        sup->fired);
-            }
         } else if (on && !sup_is_final(sup) && sup_next_time(sup, &next)) {
             on = !sup->options.paced || wait_until(sup, begin, next);
             sup->t = next;

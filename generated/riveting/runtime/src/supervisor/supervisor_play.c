@@ -105,21 +105,21 @@ static bool make_room(sup_t *sup)
     return true;
 }
 
-int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
+int sup_find_one(sup_t *sup, int32_t owner, uint32_t *transition)
 {
     const pn_net_t *const net = sup->net;
     char doing[512];
     first_binding_t first = { sup->binding, 0U, false };
     uint32_t i = 0U;
-    uint32_t index = 0U;
     while ((i < net->order_count) && !first.found) {
-        index = net->order[i];
+        const uint32_t index = net->order[i];
         const pn_transition_t *const candidate = &net->transition[index];
         i++;
         if ((owner >= 0) && (candidate->owner != owner)) {
             continue;
         }
         first.size = candidate->binding->size;
+        *transition = index;
         (void)candidate->enumerate(&sup->cx, sup->marking, index, keep_first, &first);
         if (sup->cx.error != PN_OK) {
             (void)snprintf(doing, sizeof doing, "looking for bindings of `%s`", candidate->name);
@@ -127,10 +127,18 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
             return -1;
         }
     }
-    if (!first.found) {
-        return 0;
+    return first.found ? 1 : 0;
+}
+
+int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
+{
+    char doing[512];
+    uint32_t index = 0U;
+    const int found = sup_find_one(sup, owner, &index);
+    if (found <= 0) {
+        return found;
     }
-    const pn_transition_t *const chosen = &net->transition[index];
+    const pn_transition_t *const chosen = &sup->net->transition[index];
     if (!sup_monitor_choice(sup, owner, index)) {
         return -1;
     }

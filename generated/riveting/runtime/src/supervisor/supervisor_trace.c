@@ -91,7 +91,7 @@ void sup_trace_end(sup_t *sup)
         pn_text_char(&text, ']');
         members = text.truncated ? NULL : places;
     }
-    pn_trace_end(&sup->trace, sup->t, sup->stopped ? sup->reason : "finished", members);
+    pn_trace_end(&sup->trace, sup->t, (sup->reason[0] != '\0') ? sup->reason : "finished", members);
     if (!pn_trace_close(&sup->trace)) {
         (void)sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);
     }
