@@ -340,6 +340,10 @@ class _Writer:
             case Sequence((only,)):
                 return self.value(only, c)
             case Var(symbol) if symbol.colset is not None:
+                if symbol.colset.resolved != c.resolved:
+                    raise _NotSymmetricError(
+                        f"`{symbol.name}` is of `{symbol.colset.name}`, not of `{c.name}`"
+                    )
                 return self.variable(symbol)
             case RecordExp(fields) if c.resolved.kind in (Kind.PRODUCT, Kind.RECORD):
                 own = c.resolved

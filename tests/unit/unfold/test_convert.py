@@ -170,6 +170,7 @@ def test_symmetric_net_for_cpn_tools(tmp_path: Path) -> None:
         (("out A : (next c, up n)", "out A : 1`(red, 9)"), "arc `Turn` -> `A`"),
         (("out A : (next c, up n)", "out A : empty -- 1`(c, n)"), "arc `Turn` -> `A`"),
         (("1`(next c)", "n`(next c)"), "arc `Other` -> `C`"),
+        (("var n, m: N;", "colset N6 = int with 1..6; var n, m: N6;"), "arc `A` -> `Turn`"),
     ],
 )
 def test_what_is_not_symmetric_is_named(change: tuple[str, str], said: str) -> None:
