@@ -22,6 +22,8 @@ NET_SEEDS = tuple(range(3, 3 + amount(2, 60)))
 CELL_SEEDS = tuple(range(5, 5 + amount(1, 30)))
 WORKING = 5
 """A cell whose runs come to their end."""
+WITHOUT_START = 7310020
+"""A net whose initial marking has a token that is not in its colour set."""
 
 
 @pytest.mark.parametrize("seed", NET_SEEDS)
@@ -51,6 +53,22 @@ def test_a_way_that_says_otherwise_is_told(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(Case, "ask", rash)
     verdict = judge("small", NET_SEEDS[0], tmp_path, number=1)
     assert "yes with" in "\n".join(verdict.wrong)
+
+
+def test_a_net_without_an_initial_marking_is_refused(tmp_path: Path) -> None:
+    verdict = judge("anything", WITHOUT_START, tmp_path, number=1)
+    assert not verdict.wrong and verdict.counts["refused"] == 1
+
+
+def test_the_whole_that_breaks_off_is_wrong(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(case: Case, way: Way) -> asked.Answers | None:
+        raise RuntimeError(way.name)
+
+    monkeypatch.setattr(Case, "ask", broken)
+    verdict = judge("small", NET_SEEDS[0], tmp_path, number=1)
+    assert verdict.wrong and verdict.counts["wrong"] == 1
 
 
 def test_a_false_yes_of_a_cell_is_told_by_its_runs(tmp_path: Path) -> None:

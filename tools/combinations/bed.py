@@ -16,6 +16,7 @@ from tools.combinations.subjects import ANYHOW, make, questions
 from tools.combinations.ways import WHOLE, Way, ways
 
 from pn2code.diagnostics import Diagnostics
+from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verdict.opened import read
 from pn2code.verify.controller import hunts
 
@@ -77,13 +78,14 @@ def _judged(family: str, seed: int, folder: Path, number: int, runs: int) -> Ver
     texts = [] if opened is None else questions(r, opened.flat)
     own = [c.text for c in subject.cell.claims] if subject.cell is not None else []
     case = None if opened is None else Case.read(subject.path, [*own, *texts])
-    if case is None:
+    if case is None or not _begins(case):
         verdict.counts["refused"] += 1
         return verdict
     verdict.counts[family] += 1
     known = Known()
     whole = _ask(case, WHOLE, verdict, known)
     if whole is None:
+        verdict.counts["wrong"] += bool(verdict.wrong)
         return verdict
     verdict.counts["questions"] += len(whole.rows)
     reference = case.reference()
@@ -100,6 +102,15 @@ def _judged(family: str, seed: int, folder: Path, number: int, runs: int) -> Ver
         verdict.wrong += contradicted(subject, case, known.answers, r, runs, verdict.counts)
     verdict.counts["wrong"] += bool(verdict.wrong)
     return verdict
+
+
+def _begins(case: Case) -> bool:
+    """Whether the net has an initial marking: `verify` says of others what is wrong with it."""
+    try:
+        Game(case.opened.flat, case.opened.storage)
+    except GameError:
+        return False
+    return True
 
 
 def _ask(case: Case, way: Way, verdict: Verdict, known: Known) -> Answers | None:

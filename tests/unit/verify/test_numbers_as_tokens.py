@@ -17,10 +17,12 @@ from pn2code.verify.exploring.numbers_as_tokens import Written, numbers_as_token
 
 HEAD = """standard
 colset SMALL = int with 0..9;
+colset SUBSET = int with 0..9;
 colset COLOUR = int with 1..2;
 val parts = 3;
 fun half n = n div 2;
 globref seen = 0;
+fun noted () = !seen;
 var n, m : INT;
 var c : COLOUR;
 var s : SMALL;
@@ -109,6 +111,7 @@ def test_parts_that_are_counted_by_numbers(tmp_path: Path) -> None:
     assert assert_alike(net, made) == 11
 
 
+COUNTING = "    code action (seen := !seen + 1)\n"
 STAYS = {
     "the guard is missing": ("    guard [n > 0]\n", ""),
     "it may become negative": ("out Left : n - 1", "out Left : n - 2"),
@@ -119,6 +122,16 @@ STAYS = {
     ),
     "it is multiplied": ("out Left : n - 1", "out Left : n - n"),
     "another function is asked": ("[n > 0]", "[half n > 0]"),
+    "a reference is asked": ("    guard [n > 0]\n", f"    guard [n > !seen]\n{COUNTING}"),
+    "a function asks a reference": ("    guard [n > 0]\n", f"    guard [n > noted ()]\n{COUNTING}"),
+    "chance decides": ("[n > 0]", "[n > discrete (0, 1)]"),
+    "it becomes a constant, whatever it was": ("out Left : n - 1", "out Left : 0"),
+    "another number than 0 is left out": ("[n > 0]", "[n > 0, n <> 2]"),
+    "its place has limits, its variable has none": ("Left : INT", "Left : SUBSET"),
+    "its variable has limits, its place has none": (
+        "    guard [n > 0]\n    in Left : n\n    out Left : n - 1\n",
+        "    guard [s > 0]\n    in Left : s\n    out Left : s - 1\n",
+    ),
     "two counters are compared": ("    guard [n > 0]\n", "    guard [n > m]\n    both Done : m\n"),
     "it begins negative": ("Left : INT = 1`parts", "Left : INT = 1`(~3)"),
     "it holds two numbers": ("Left : INT = 1`parts", "Left : INT = 1`parts ++ 1`1"),
