@@ -5,7 +5,7 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** What browsers say that hide who draws: WebKit always does. */
 const HIDDEN = /^(apple gpu|webkit webgl|mozilla|generic renderer|null)?$/i;
 /** What a GPU has drawn in some ms, and a processor has not: so long for it (ms) is too long. */
-const PROBE_MS = 50;
+const PROBE_MS = 25;
 const PROBE_SIZE = 256;
 const PROBE_VERTEX = "attribute vec2 at; void main() { gl_Position = vec4(at, 0.0, 1.0); }";
 const PROBE_FRAGMENT = `

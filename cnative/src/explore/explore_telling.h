@@ -6,7 +6,7 @@
 
 #include "explore_run.h"
 
-/* Who measures, where there is a limit of time. Without one, as of a net with references, the search ends at its limit. */
+/* Who measures, where there is a limit of time. Without one, or with references, the search ends at its limit. */
 void ex_telling_make(ex_run_t *run);
 /* While all threads pause: measures what a state and a multi-set take. */
 void ex_telling_measure(ex_run_t *run);

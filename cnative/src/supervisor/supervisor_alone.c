@@ -222,7 +222,7 @@ static bool wait_until(sup_t *sup, uint64_t begin, double t)
     return true;
 }
 
-/* After as many firings as are allowed: whether anything is enabled still, which is said; true as well after an error. */
+/* After as many firings as are allowed: whether anything is enabled still, which is said; true after an error, too. */
 static bool goes_beyond(sup_t *sup)
 {
     uint32_t transition = 0U;

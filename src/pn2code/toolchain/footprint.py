@@ -30,7 +30,7 @@ MOST_LINES = 60
 POINTER = "__indirect_call"
 INDIRECT: Mapping[str, str] = {
     r"main": r"sup_run_(cell|alone)|pn_file_allow",
-    r"sup_fire_one|sup_play": r"\w+_enumerate|\w+_fire|pn_marking_collect",
+    r"sup_(find|fire)_one|sup_play": r"\w+_enumerate|\w+_fire|pn_marking_collect",
     r"\w+_enumerate": r"keep_first",
     r"sup_next_time": r"pn_next_time",
     r"pn_next_time": r"thresholds",

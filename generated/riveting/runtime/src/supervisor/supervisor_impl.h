@@ -85,8 +85,8 @@ bool sup_stop_error(sup_t *sup, const char *doing);
 
 /* --- supervisor_play.c --- */
 
-/* Looks for the first enabled transition of the owner (-1: of anybody) in the documented order, and keeps its binding in
- * `sup->binding`. Returns 1 when there is one, 0 when there is none, -1 after an error. */
+/* Looks for the first enabled transition of the owner (-1: of anybody) in the documented order, and keeps its binding
+ * in `sup->binding`. Returns 1 when there is one, 0 when there is none, -1 after an error. */
 int sup_find_one(sup_t *sup, int32_t owner, uint32_t *transition);
 
 /* Fires the first enabled transition of the owner (-1: of anybody) in the documented order. Returns 1 when one fired, 0
