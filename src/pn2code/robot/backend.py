@@ -6,7 +6,7 @@ them. So every backend gives the same trajectories.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
@@ -54,6 +54,24 @@ class Clearance:
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""
         return self.allowed if self.stands or not is_free else None
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is one of the distances that a run is judged by: no contact, or a deeper one than is permitted."""
+        return self.allowed is None or self.distance < -self.allowed
+
+
+def closest(items: Iterable[Clearance]) -> Iterator[Clearance]:
+    """Of each kind and robot the nearest pair that must keep apart; and all permitted contacts."""
+    best: dict[tuple[str, str], Clearance] = {}
+    for c in items:
+        if c.allowed is not None:
+            yield c
+            continue
+        key = (c.kind, c.robot)
+        if key not in best or c.distance < best[key].distance:
+            best[key] = c
+    yield from best.values()
 
 
 BEFORE = 0.12

@@ -8,7 +8,7 @@ from dataclasses import field
 from typing import Any
 
 from pn2code.base.frozen import frozen, record
-from pn2code.robot.backend import Beside, Clearance, ClearanceKind
+from pn2code.robot.backend import Beside, Clearance, ClearanceKind, closest
 from pn2code.robot.bullet_world import BulletWorld, LoadedBody, LoadedRobot
 from pn2code.robot.part import Part
 from pn2code.robot.placed_links import tool_links
@@ -135,7 +135,7 @@ class BulletDistances:
                     *self._beside_riders(a, limit),
                 ]
             out += self._known["scene", me] + self._known["self", me]
-        return tuple(_closest(out))
+        return tuple(closest(out))
 
     def pairs(
         self,
@@ -453,16 +453,3 @@ def _keep_nearest(best: dict[tuple[str, str], Clearance], gap: Clearance) -> Non
     old = best.get((gap.a, gap.b))
     if old is None or gap.distance < old.distance:
         best[gap.a, gap.b] = gap
-
-
-def _closest(items: Sequence[Clearance]) -> Iterator[Clearance]:
-    """Of each kind and robot the nearest pair that must keep apart; and all permitted contacts."""
-    best: dict[tuple[str, str], Clearance] = {}
-    for c in items:
-        if c.allowed is not None:
-            yield c
-            continue
-        key = (c.kind, c.robot)
-        if key not in best or c.distance < best[key].distance:
-            best[key] = c
-    yield from best.values()

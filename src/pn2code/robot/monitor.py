@@ -19,7 +19,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.active_motion import MotionKind
-from pn2code.robot.backend import Backend, Clearance
+from pn2code.robot.backend import Backend, Clearance, closest
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
 from pn2code.robot.kinematics import Conditioning
@@ -92,9 +92,10 @@ class Verdict:
     Args:
         t: time, s.
         samples: of each robot.
-        clearances: nearest pairs, or None when the backend does not measure.
+        clearances: of each kind and robot the nearest pair of those that must keep apart in what the robots do now
+            (`allowed` is None), and the contacts that they may make; None when the backend does not measure.
         fault: the first reason to stop, or None.
-        warnings: clearances below the scene's `warning_clearance`.
+        warnings: all that must keep apart and is nearer than the scene's `warning_clearance`.
     """
 
     t: float
@@ -151,7 +152,7 @@ class Monitor:
         )
         for s in samples:
             self._backend.set_joints(s.robot, s.q)
-        clearances = self._backend.clearances(self._searched)
+        measured = self._backend.clearances(self._searched)
         poses = {s.robot: s.pose for s in samples}
         fault: Fault | None = None
         for s in samples:
@@ -165,8 +166,8 @@ class Monitor:
             self._note("sigma_min", s, c.sigma_min, t, phase)
             self._note("elbow", s, c.elbow, t, phase)
             self._note("wrist", s, c.wrist, t, phase)
-        warnings = []
-        for found in clearances or ():
+        gaps, warnings = [], []
+        for found in measured or ():
             others = (found.robot, found.second or found.b.split("/")[0])
             free = any(
                 kinds.get(name) == "ptp" and not (name in found.rides and name in calm)
@@ -176,6 +177,7 @@ class Monitor:
             moves = any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides)
             if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
+            gaps.append(gap)
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:
                 continue
@@ -187,6 +189,7 @@ class Monitor:
             is_own = gap.robot in self._devices and gap.kind != "robots"
             if gap.allowed is None and not is_own and gap.distance < self._near:
                 warnings.append(gap)
+        clearances = None if measured is None else tuple(closest(gaps))
         return Verdict(t, samples, clearances, fault, tuple(warnings))
 
     def minima(self, phase: str | None = None) -> tuple[Extreme, ...]:

@@ -171,7 +171,7 @@ class RunRecord:
         arms = [s for s in verdict.samples if not s.is_device]
         nearest: dict[str, float] = {}
         for gap in verdict.clearances or ():
-            if gap.allowed is None:
+            if gap.counts:
                 name = f"clearance.{gap.kind}" + ("" if gap.kind == "robots" else f".{gap.robot}")
                 nearest[name] = min(nearest.get(name, np.inf), gap.distance)
         if verdict.clearances is not None:
@@ -193,7 +193,7 @@ class RunRecord:
             verdict.t,
             [
                 gap
-                for gap in verdict.clearances or ()
+                for gap in (*(verdict.clearances or ()), *verdict.warnings)
                 if gap.kind == "robots" or gap.robot not in devices or gap.distance < 0.0
             ],
         )
@@ -206,8 +206,7 @@ class RunRecord:
         """Keeps what is near, and what is in the way, when it begins, changes and ends."""
         near: dict[tuple[str, str], Clearance] = {}
         for gap in measured:
-            is_wrong = gap.distance < -(gap.allowed or 0.0)
-            if is_wrong or (gap.allowed is None and gap.distance <= NEAR):
+            if gap.counts and gap.distance <= NEAR:
                 pair = (gap.a, gap.b)
                 if pair not in near or gap.distance < near[pair].distance:
                     near[pair] = gap
