@@ -20,7 +20,7 @@ _NEAREST, _FURTHEST = 0.8, 2.4
 """m: of the camera from where they touch."""
 _INSET = (400, 225)
 _RING = 60.0
-"""Pixels: the radius of the ring around where they touch, which may be inside of both."""
+"""Pixels: the radius of the ring around where they touch, as the ball may be inside of both."""
 _RED, _WHITE = (230, 13, 13), (255, 255, 255)
 
 
@@ -65,36 +65,29 @@ def _arrange(cell: RobotCell, backend: BulletBackend, shown: Shown, pair: Pair) 
 def _picture(
     cell: RobotCell, backend: BulletBackend, pair: Pair, point: tuple[float, float, float]
 ) -> Picture | None:
+    from pn2code.robot.render import picture
 
-    near = _near(cell, backend, pair, point)
-    image = _seen(backend, near, point)
-    if image is None:
+    near, whole = _near(cell, backend, pair, point), _whole(cell, point)
+    backend.mark(point, _BALL * float(np.linalg.norm(np.subtract(near.eye, point))))
+    image = picture(backend, near)
+    inset = picture(backend, whole, *_INSET, smooth=2)
+    if image is None or inset is None:
         return None
-    whole = _seen(backend, _camera(cell, backend, point), point, _INSET)
-    assert whole is not None, "it has eyes"
-    height, width = image.shape[:2]
-    rows, columns = np.ogrid[:height, :width]
-    off = np.hypot(rows - (height - 1) / 2.0, columns - (width - 1) / 2.0) - _RING
-    image[np.abs(off) < 4.0] = _WHITE
-    image[np.abs(off) < 2.0] = _RED
-    h, w = whole.shape[:2]
+    _ring(image, _RING)
+    _ring(inset, _RING / 4.0)
+    (height, width), (h, w) = image.shape[:2], inset.shape[:2]
     image[height - h - 15 : height - 9, width - w - 15 : width - 9] = _WHITE
-    image[height - h - 12 : height - 12, width - w - 12 : width - 12] = whole
+    image[height - h - 12 : height - 12, width - w - 12 : width - 12] = inset
     return image
 
 
-def _seen(
-    backend: BulletBackend,
-    camera: Camera,
-    point: tuple[float, float, float],
-    size: tuple[int, int] | None = None,
-) -> Picture | None:
-    """With a ball that looks equally large from wherever it is seen."""
-    from pn2code.robot.render import picture
-
-    far = float(np.linalg.norm(np.subtract(camera.eye, point)))
-    backend.mark(point, (_BALL if size is None else 2.0 * _BALL) * far)
-    return picture(backend, camera) if size is None else picture(backend, camera, *size, smooth=2)
+def _ring(image: Picture, radius: float) -> None:
+    """Around the middle, at which the camera looks."""
+    height, width = image.shape[:2]
+    rows, columns = np.ogrid[:height, :width]
+    off = np.hypot(rows - (height - 1) / 2.0, columns - (width - 1) / 2.0) - radius
+    image[np.abs(off) < 3.5] = _WHITE
+    image[np.abs(off) < 2.0] = _RED
 
 
 def _near(
@@ -119,18 +112,10 @@ def _near(
     )
 
 
-def _camera(cell: RobotCell, backend: BulletBackend, point: tuple[float, float, float]) -> Camera:
-    """Of the whole: from above, beside the arms, with all bases in view, and so that nothing hides where they touch."""
-    from pn2code.robot.render import unhidden
+def _whole(cell: RobotCell, point: tuple[float, float, float]) -> Camera:
+    """From above, beside the arms, with all bases in view, and where they touch in the middle."""
+    from pn2code.robot.render import camera_at
 
-    x, y, z = point
+    x, y, _ = point
     far = max([2.0, *(max(abs(r.base.x - x), abs(r.base.y - y)) for r in cell.robots)])
-    return unhidden(
-        backend,
-        "touch",
-        np.array([x, y, 0.8 * z]),
-        np.array([point]),
-        distance=2.27 * far,
-        azimuth=-41.0,
-        elevation=29.0,
-    )
+    return camera_at("touch", np.array(point), azimuth=-41.0, elevation=29.0, distance=3.2 * far)

@@ -32,16 +32,16 @@ def cameras(cell: RobotCell, backend: Backend) -> tuple[Camera, ...]:
     low, high = _extent(cell)
     centre = (low + high) / 2.0
     size = float(np.linalg.norm((high - low)[:2]))
-    overview = _camera(
+    overview = camera_at(
         "overview", centre, azimuth=-40.0, elevation=24.0, distance=0.98 * size + 1.5
     )
-    behind = _camera("behind", centre, azimuth=50.0, elevation=20.0, distance=1.15 * size + 1.5)
+    behind = camera_at("behind", centre, azimuth=50.0, elevation=20.0, distance=1.15 * size + 1.5)
     tips = np.array([backend.tcp(r.name)[:3, 3] for r in cell.robots])
     middle = tips.mean(axis=0)
     spread = float(np.abs(tips - middle).max())
     # Close-ups: past the edge of the panel, along x, slightly from above.
-    tools = _camera("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
-    seam = _camera("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
+    tools = camera_at("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
+    seam = camera_at("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
     return (overview, behind, tools, seam)
 
 
@@ -77,7 +77,7 @@ def unhidden(
     ]
     turns = sorted(range(-180, 180, 20), key=abs)
     ways = [(azimuth + a, e) for e in (elevation, 32.0, 48.0) for a in turns]
-    views = [_camera(name, target, azimuth=a, elevation=e, distance=distance) for a, e in ways]
+    views = [camera_at(name, target, azimuth=a, elevation=e, distance=distance) for a, e in ways]
     return min(views, key=lambda view: _unseen(backend, view, places))
 
 
@@ -108,7 +108,7 @@ def _extent(cell: RobotCell) -> tuple[Array, Array]:
     return np.min(points, axis=0), np.max(points, axis=0)
 
 
-def _camera(
+def camera_at(
     name: str, target: Array, *, azimuth: float, elevation: float, distance: float
 ) -> Camera:
     """From `distance` away in a direction: azimuth from +x towards +y, degrees."""
