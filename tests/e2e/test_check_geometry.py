@@ -93,6 +93,7 @@ def test_arms_that_do_not_are_found_with_a_run_and_what_would_help(told: Told) -
     assert (found.of_moves, found.of_pairs) == ("yes", "no")
     (pair,) = found.pairs
     assert pair.transitions == ("Top.Robot1.Visit1", "Top.Robot2.Visit2")
+    assert pair.around is not None and {*pair.around.stands} == {"robot1", "robot2"}
     assert pair.run is not None and pair.run.file is not None and pair.run.under_way == 2
     lines = [json.loads(x) for x in pair.run.file.read_text().splitlines()]
     assert {x["transition"] for x in lines[-3:-1]} == set(pair.transitions)

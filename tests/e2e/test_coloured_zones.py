@@ -143,9 +143,13 @@ def test_an_arm_that_rests_there_is_told_as_such(tmp_path: Path) -> None:
 
 
 def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> None:
-    """It is said whom it serves and whom not, and it is what is proposed, not a second one."""
-    net = NET.replace("      TAKE\n", "      in Free : ()\n", 1)
-    net = net.replace("      GIVE\n", "      out Free : ()\n", 1)
+    """It is said whom it serves and whom not, and it is what is proposed, not a second one.
+
+    Its arcs are written with a number of tokens, or not at all, as people write them.
+    """
+    net = NET.replace("      TAKE\n", "      in Free\n", 1)
+    net = net.replace("      GIVE\n", "      out Free\n", 1)
+    net = net.replace("out Busy2 : n", "out Busy2 : 1`n")
     cell = meeting_cell(tmp_path / "cell", guarded=False, net=net)
     told = tell(cell, tmp_path)
     (proposal,) = told.layout["proposals"]
@@ -164,3 +168,7 @@ def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> No
     ) in said
     assert "proposal: the token `()` of `Top.Supervisor.Free`, a place that is there" in said
     assert "also taken by `Top.Supervisor.Send2`" in said
+    assert (
+        "arcs to draw: `Top.Supervisor.Free` -> `Top.Supervisor.Send2`, "
+        "`Top.Supervisor.Got2` -> `Top.Supervisor.Free`"
+    ) in said

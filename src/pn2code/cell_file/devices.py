@@ -109,7 +109,8 @@ DEVICE_AXIS = Section(
         Key(
             "stop",
             "text",
-            "A name of `[places]`: the belt stops where the first part on it comes so far.",
+            "A name of `[places]`: the belt stops where the first part on it comes so far, and does not run while one "
+            "is there. There is one; nothing passes it.",
             "the name of a place",
             only=_BELT,
         ),

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
 from pn2code.robot.backend import Clearance
+from pn2code.robot.part import Part
+from pn2code.robot.transforms import Array
 
 
 @frozen(eq=False)
@@ -87,6 +90,19 @@ class Move:
         }
 
 
+@frozen(eq=False)
+class Around:
+    """What else is there where two things touch.
+
+    Args:
+        stands: of each arm and device where it rests, or has begun what it does (rad).
+        parts: also those in tools and on plates.
+    """
+
+    stands: Mapping[str, Array]
+    parts: tuple[Part, ...]
+
+
 @frozen
 class Pair:
     """Two things that can be under way at once and do not surely keep apart.
@@ -101,6 +117,7 @@ class Pair:
         run: in which they are under way.
         is_held: whether one of them is a clamp that holds what the other one takes along: no free zone would help.
         do: what the user can do; "": see the proposals.
+        around: what else is there then, for pictures; None: nobody knows.
     """
 
     robots: tuple[str, str]
@@ -117,6 +134,7 @@ class Pair:
     is_held: bool = False
     do: str = ""
     things: tuple[str, str] = ("", "")
+    around: Around | None = None
 
     def row(self) -> dict[str, Any]:
         """For programs."""

@@ -14,8 +14,9 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
+from pn2code.geometry.answers import Around, Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
+from pn2code.geometry.around import around_of
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
 from pn2code.geometry.graph import CellGraph
@@ -73,6 +74,7 @@ class _Meeting:
     apart: Apart
     met: Met
     things: tuple[str, str] = ("", "")
+    around: Around | None = None
 
     @property
     def told(self) -> tuple[object, ...]:
@@ -391,7 +393,11 @@ class Look:
                     )
                 )
                 robots, things = (leg.robot, other.robot), (thing, its_thing)
-                met_[own] = _Meeting(robots, (first, second), (does, its), apart, met, things)
+                legs = (x for x in (*a.legs, *b.legs) if x[0] is leg or x[0] is other)
+                around = around_of(found, met, legs)
+                met_[own] = _Meeting(
+                    robots, (first, second), (does, its), apart, met, things, around
+                )
             if is_touch and own == sides:
                 break
         return touches
@@ -446,7 +452,8 @@ class Look:
                 continue
             stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
             does = (words(leg.command), stands)
-            bad[key] = _Meeting((leg.robot, ""), (t, ""), does, apart, met)
+            around = around_of(found, met, [(leg, contents)])
+            bad[key] = _Meeting((leg.robot, ""), (t, ""), does, apart, met, around=around)
         return self._reported(found, bad.values())
 
     # --- words and runs --------------------------------------------------------------------------
@@ -510,6 +517,7 @@ def _met(meeting: _Meeting, apart: Apart, run: Run | None) -> Pair:
         apart.where.distance if apart.where else 0.0,
         tuple((r, tuple(map(float, q))) for r, q in joints if r),
         run,
+        around=meeting.around,
         least=_most_in(apart) if is_touch else None,
         is_held=is_touch and bool(apart.why),
         things=meeting.things,

@@ -13,6 +13,7 @@ takes one away gives it back.
 from __future__ import annotations
 
 import itertools
+from collections import deque
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
@@ -261,24 +262,41 @@ def users(graph: CellGraph, place: int) -> tuple[frozenset[int], frozenset[int]]
 def with_keepers(graph: CellGraph, sides: Sequence[Collection[int]]) -> Iterator[Guard]:
     """Ways to keep sides apart by a place that is there, whose token is away already while some are in the zone.
 
+    First the best one of each place, those places first whose token is away for the shortest.
+
     Args:
         sides: of each robot the states in which it is in the zone.
     """
     held: Held | None = None
+    turns: deque[Iterator[Guard]] = deque()
     for place in keepers(graph):
         free = [{s for s in side if graph.marked[s].get(place, 0)} for side in sides]
         if all(free) or not any(free):
             continue
         held = held or held_groups(graph)
-        takes, gives = users(graph, place)
-        left = set().union(*free)
-        for groups in itertools.islice(_any_covers(held, left, place), _CANDIDATES):
-            guard = _guard(graph, groups)
-            if guard is None:
-                continue
-            more, back = ({h.transition for h in hands} for hands in (guard.takes, guard.gives))
-            if takes.isdisjoint(more) and gives.isdisjoint(back):
-                yield replace(guard, place=place)
+        turns.append(_for_others(graph, held, set().union(*free), place))
+    while turns:
+        guards_of = turns.popleft()
+        guard = next(guards_of, None)
+        if guard is not None:
+            yield guard
+            turns.append(guards_of)
+
+
+def _for_others(graph: CellGraph, held: Held, left: Collection[int], place: int) -> Iterator[Guard]:
+    """Ways to take the token of a place that is there in some more states."""
+    takes, gives = users(graph, place)
+    made = 0
+    for groups in _any_covers(held, left, place):
+        guard = _guard(graph, groups)
+        if guard is None:
+            continue
+        more, back = ({h.transition for h in hands} for hands in (guard.takes, guard.gives))
+        if takes.isdisjoint(more) and gives.isdisjoint(back):
+            yield replace(guard, place=place)
+            made += 1
+            if made == _CANDIDATES:
+                return
 
 
 def _any_covers(held: Held, wanted: Collection[int], place: int) -> Iterator[tuple[Group, ...]]:

@@ -228,8 +228,15 @@ def _proposed(p: Proposal) -> Iterator[str]:
     yield f"    {also}given back by {_each(p.gives, p.gives_when, 'if')}"
     if any((*p.takes_when, *p.gives_when)):
         yield "    (on these arcs: `if CONDITION then 1`() else empty`)"
+    yield f"    arcs to draw: {', '.join(_arcs(p))}"
     yield f"    (it is empty while {_each(p.while_, p.while_with, 'with')} is marked)"
     yield f"  {p.says}"
+
+
+def _arcs(p: Proposal) -> Iterator[str]:
+    """Of the place that is proposed, each with the transition that it leads to or comes from."""
+    yield from (f"`{p.name}` -> `{t}`" for t in p.takes)
+    yield from (f"`{t}` -> `{p.name}`" for t in p.gives)
 
 
 def _far(distance: float) -> str:

@@ -19,7 +19,8 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL, TCon, TFun, TRecord, list_of, tuple_of
 from pn2code.net.builder import Builder
-from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition, Form
+from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
+from pn2code.net.put_token import token_put
 from pn2code.semantics.game.token_game import GameError
 from pn2code.semantics.values.data import Data, Value
 
@@ -95,11 +96,9 @@ def _views(colset: Colset, value: Value) -> Iterator[tuple[tuple[str, Value], ..
 
 def is_one(arc: FlatArc) -> bool:
     """Whether it moves one token whatever happens."""
-    if arc.inscription is None:
-        return False
     if arc.kind is ArcKind.OUTPUT:
-        return arc.inscription.form is Form.TOKEN
-    terms = arc.inscription.terms
+        return token_put(arc) is not None
+    terms = arc.inscription.terms if arc.inscription is not None else ()
     if len(terms) != 1 or terms[0].whole:
         return False
     coefficient = terms[0].coefficient
@@ -108,8 +107,12 @@ def is_one(arc: FlatArc) -> bool:
 
 def told(arc: FlatArc) -> core.Exp:
     """The colour of the token that it moves."""
+    if arc.kind is ArcKind.OUTPUT:
+        token = token_put(arc)
+        assert token is not None, "it puts one token"
+        return token
     assert arc.inscription is not None
-    return arc.inscription.value if arc.kind is ArcKind.OUTPUT else arc.inscription.terms[0].value
+    return arc.inscription.terms[0].value
 
 
 def moving(t: FlatTransition, places: frozenset[int]) -> Iterator[FlatArc]:

@@ -48,6 +48,7 @@ class BulletBackend:
         self._gui = gui
         self._egl: int | None = None
         self._ball: int | None = None
+        self._ball_radius = 0.0
         if looks and not gui:
             self._load_egl()
         with silent():
@@ -174,7 +175,11 @@ class BulletBackend:
 
     def mark(self, point: Sequence[float], radius: float) -> None:
         """Shows a red ball, of which no distances are measured; it moves when it is shown again."""
+        if self._ball is not None and self._ball_radius != radius:
+            self._p.removeBody(self._ball, physicsClientId=self._client)
+            self._ball = None
         if self._ball is None:
+            self._ball_radius = radius
             shape = self._p.createVisualShape(
                 self._p.GEOM_SPHERE,
                 radius=radius,

@@ -225,7 +225,8 @@ class RobotExecutor:
         angle = self._arm_angle(command)
         found = self.robot.kinematics.nearest(target, q, self.robot.branch, angle)
         if found is None:
-            raise unreachable(self.robot, target, q, angle)
+            tip = self._tcp(command)[1] if command.tcp else None
+            raise unreachable(self.robot, target, q, angle, command.target, tip)
         return found.q, target
 
     def _arm_angle(self, command: MoveJoint | MoveLinear | MoveCircular) -> float | None:

@@ -17,10 +17,11 @@ import imageio.v2 as imageio
 import numpy as np
 
 from pn2code.base.closing import Closing
-from pn2code.robot.backend import Backend, Camera, Picture
+from pn2code.robot.backend import BEFORE, Backend, Camera, Picture
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
+Point = tuple[float, float, float]
 WIDTH, HEIGHT = 1280, 720
 _TOGETHER = 0.6
 """m: tools that are no further apart are seen together."""
@@ -31,16 +32,16 @@ def cameras(cell: RobotCell, backend: Backend) -> tuple[Camera, ...]:
     low, high = _extent(cell)
     centre = (low + high) / 2.0
     size = float(np.linalg.norm((high - low)[:2]))
-    overview = _camera(
+    overview = camera_at(
         "overview", centre, azimuth=-40.0, elevation=24.0, distance=0.98 * size + 1.5
     )
-    behind = _camera("behind", centre, azimuth=50.0, elevation=20.0, distance=1.15 * size + 1.5)
+    behind = camera_at("behind", centre, azimuth=50.0, elevation=20.0, distance=1.15 * size + 1.5)
     tips = np.array([backend.tcp(r.name)[:3, 3] for r in cell.robots])
     middle = tips.mean(axis=0)
     spread = float(np.abs(tips - middle).max())
     # Close-ups: past the edge of the panel, along x, slightly from above.
-    tools = _camera("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
-    seam = _camera("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
+    tools = camera_at("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
+    seam = camera_at("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
     return (overview, behind, tools, seam)
 
 
@@ -63,16 +64,32 @@ def unhidden(
     distance: float,
     azimuth: float = -28.0,
     elevation: float = 16.0,
+    about: float = 0.04,
 ) -> Camera:
-    """A camera from which the least of some places is hidden: as it is told if that is no worse, else from beside."""
-    off = 0.04 * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    """A camera from which the least of some places is hidden: as it is told if that is no worse, else from beside.
+
+    Args:
+        about: m: so far around each place counts as well.
+    """
+    off = about * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
     places = [
         (float(x), float(y), float(z)) for x, y, z in (points[:, None] + off[None]).reshape(-1, 3)
     ]
     turns = sorted(range(-180, 180, 20), key=abs)
     ways = [(azimuth + a, e) for e in (elevation, 32.0, 48.0) for a in turns]
-    views = [_camera(name, target, azimuth=a, elevation=e, distance=distance) for a, e in ways]
-    return min(views, key=lambda view: backend.hidden(view.eye, places))
+    views = [camera_at(name, target, azimuth=a, elevation=e, distance=distance) for a, e in ways]
+    return min(views, key=lambda view: _unseen(backend, view, places))
+
+
+def _unseen(backend: Backend, view: Camera, places: list[Point]) -> int:
+    """How much is hidden; what stands between the eye and the first place counts for all of them.
+
+    A ray out of a thing does not meet it, so that an eye inside of one would see everything: a ray to the eye does.
+    """
+    first, eye = np.array(places[0]), np.array(view.eye)
+    x, y, z = (first + BEFORE * (eye - first) / np.linalg.norm(eye - first)).tolist()
+    is_behind = backend.hidden((x, y, z), [view.eye])
+    return backend.hidden(view.eye, places) + len(places) * is_behind
 
 
 def _extent(cell: RobotCell) -> tuple[Array, Array]:
@@ -91,7 +108,7 @@ def _extent(cell: RobotCell) -> tuple[Array, Array]:
     return np.min(points, axis=0), np.max(points, axis=0)
 
 
-def _camera(
+def camera_at(
     name: str, target: Array, *, azimuth: float, elevation: float, distance: float
 ) -> Camera:
     """From `distance` away in a direction: azimuth from +x towards +y, degrees."""

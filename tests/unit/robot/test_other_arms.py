@@ -528,3 +528,16 @@ def test_out_of_reach_says_how_far_the_arm_reaches(name: str, pose: Pose, limit:
 def test_only_what_an_arm_has_is_straight(name: str, told: str) -> None:
     """A SCARA has no wrist, a gantry not even an elbow."""
     assert kinematics(name).straightness(0.1, 0.2) == told
+
+
+def test_a_pose_that_is_inside_the_limits_with_the_tool_turned() -> None:
+    """It is said by how much, and which `rz` that is; with it the arm goes there."""
+    arm = executor("iiwa14_r820")
+    with pytest.raises(MotionFault) as caught:
+        begin(arm, MoveJoint(Pose(0.6, 0.0, 0.3, math.pi, 0.0, 0.0)))
+    assert caught.value.kind == "joint-limit"
+    assert (
+        "another `arm_angle` may do; with the tool turned by 15 deg about its axis (rz = -15) "
+        "the pose is inside the limits"
+    ) in str(caught.value)
+    begin(arm, MoveJoint(Pose(0.6, 0.0, 0.3, math.pi, 0.0, math.radians(-15.0))))

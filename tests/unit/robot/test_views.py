@@ -50,3 +50,11 @@ def test_a_close_up_is_taken_from_where_nothing_is_in_the_way() -> None:
     _, hidden, eyes = tip_and_cameras(tip + 0.4 * (eyes[0] - tip))
     assert hidden["usual"] == 2 and hidden["chosen"] == 0
     assert np.linalg.norm(eyes[0] - eyes[1]) > 0.3
+
+
+def test_no_eye_is_inside_of_a_thing() -> None:
+    """From there nothing seems to be in the way."""
+    _, _, eyes = tip_and_cameras(None)
+    _, hidden, eyes = tip_and_cameras(eyes[0])
+    assert hidden == {"usual": 0, "chosen": 0}
+    assert np.linalg.norm(eyes[0] - eyes[1]) > 0.3

@@ -54,8 +54,8 @@ from pn2code.net.flat import (
     FlatArc,
     FlatNet,
     FlatTransition,
-    Form,
 )
+from pn2code.net.put_token import token_put
 from pn2code.net.uses import pattern_variables, walk
 
 
@@ -165,7 +165,7 @@ def _looked_at(
         or not _is_one(terms[0].coefficient)
     ):
         return None
-    value = terms[0].value if put is None else _one_token(put)
+    value = terms[0].value if put is None else token_put(put)
     if value is None:
         return None
     uses = _Uses(t)
@@ -269,22 +269,6 @@ def _is_constant(e: core.Exp) -> bool:
 
 def _is_one(e: core.Exp) -> bool:
     return isinstance(e, core.Lit) and e.value == 1
-
-
-def _one_token(arc: FlatArc) -> core.Exp | None:
-    """What an output arc puts, if that is one token whatever the binding is."""
-    assert arc.inscription is not None
-    value = arc.inscription.value
-    if arc.inscription.form is Form.TOKEN:
-        return value
-    match value:
-        case core.Apply(core.Builtin("Ms.`"), core.RecordExp((("1", n), ("2", token)))) if _is_one(
-            n
-        ):
-            return token
-        case core.ListExp((token,)):
-            return token
-    return None
 
 
 class _Uses:
