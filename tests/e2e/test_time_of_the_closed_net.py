@@ -19,7 +19,11 @@ pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 
 def verified_late(
-    folder: Path, net: str, monkeypatch: pytest.MonkeyPatch, parts: int = 1
+    folder: Path,
+    net: str,
+    monkeypatch: pytest.MonkeyPatch,
+    parts: int = 1,
+    asked: str = "ctl AF tokens(Finished) = 1",
 ) -> dict[str, Any]:
     """The time is over as soon as so many parts of the cell as it runs were explored."""
     explored_parts: list[object] = []
@@ -37,8 +41,13 @@ def verified_late(
     monkeypatch.setattr(control, "explore", explored)
     monkeypatch.setattr(command, "COUNTS_FROM", None)
     monkeypatch.setattr(command, "TURNS_FROM", 20)
+    return verified(folder, net, asked)
+
+
+def verified(folder: Path, net: str, asked: str) -> dict[str, Any]:
+    """What `verify` prints, with an hour of time."""
     words = ["verify", str(write(folder, net, TOML)), "--no-medium", "-o", str(folder / "runs")]
-    words += ["--property", "ctl AF tokens(Finished) = 1", "--max-seconds", "3600", "--json"]
+    words += ["--property", asked, "--max-seconds", "3600", "--json"]
     done = CliRunner().invoke(app, words)
     row: dict[str, Any] = json.loads(done.stdout)
     return row
@@ -51,6 +60,23 @@ def test_the_reason_is_the_time(
     (answer,) = verified_late(tmp_path, NET, monkeypatch, parts)["properties"]
     assert answer["answer"] == "inconclusive"
     assert answer["why"] == "the limit of time was reached"
+
+
+def test_of_the_closed_net_there_is_a_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = "never tokens(Finished) = 1"
+    (answer,) = verified_late(tmp_path, NET, monkeypatch, asked=asked)["properties"]
+    assert (answer["answer"], answer["net"]["answer"]) == ("inconclusive", "no")
+    run = Path(answer["net"]["evidence"]["trace"])
+    assert run.name.endswith(".closed-net.never-done.trace.jsonl") and run.exists()
+
+
+def test_runs_are_looked_for_where_the_time_of_the_exploration_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(control, "CELL_PART", 0.0)
+    (answer,) = verified(tmp_path, NET, "never tokens(Finished) = 1")["properties"]
+    assert (answer["answer"], answer["about"]) == ("no", "cell"), answer
+    assert answer["evidence"]["confirmed"] and Path(answer["evidence"]["trace"]).exists()
 
 
 def test_other_orders_of_the_closed_net_come_first(
