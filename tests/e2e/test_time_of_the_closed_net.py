@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -44,9 +45,9 @@ def verified_late(
     return verified(folder, net, asked)
 
 
-def verified(folder: Path, net: str, asked: str) -> dict[str, Any]:
+def verified(folder: Path, net: str, asked: str, toml: str = TOML) -> dict[str, Any]:
     """What `verify` prints, with an hour of time."""
-    words = ["verify", str(write(folder, net, TOML)), "--no-medium", "-o", str(folder / "runs")]
+    words = ["verify", str(write(folder, net, toml)), "--no-medium", "-o", str(folder / "runs")]
     words += ["--property", asked, "--max-seconds", "3600", "--json"]
     done = CliRunner().invoke(app, words)
     row: dict[str, Any] = json.loads(done.stdout)
@@ -67,15 +68,44 @@ def test_of_the_closed_net_there_is_a_run(tmp_path: Path, monkeypatch: pytest.Mo
     (answer,) = verified_late(tmp_path, NET, monkeypatch, asked=asked)["properties"]
     assert (answer["answer"], answer["net"]["answer"]) == ("inconclusive", "no")
     run = Path(answer["net"]["evidence"]["trace"])
-    assert run.name.endswith(".closed-net.never-done.trace.jsonl") and run.exists()
+    assert run.name.endswith(".closed-net.property-1.trace.jsonl") and run.exists()
+
+
+def test_a_failure_without_a_run_says_how_to_get_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The explorer says what it has seen when the time is over, and has none to write the way there."""
+    explore = control.explore
+
+    def late(*args: Any) -> Any:
+        found = explore(*args)
+        failed = {**found.answers[0], "answer": "no", "trace": None, "node": None}
+        answers = (failed, *found.answers[1:])
+        return replace(found, complete=False, why="seconds", answers=answers)
+
+    monkeypatch.setattr(control, "explore", late)
+    (answer,) = verified(tmp_path, NET, "never tokens(Top'flag) > 7")["properties"]
+    assert (answer["answer"], answer["evidence"], answer["rests_on"]) == ("no", None, "marking")
+    assert answer["no_run"] == (
+        "the limit of time was reached; to look for it alone: "
+        '`--no-found --no-controller --property "never tokens(Top\'flag) > 7"`'
+    )
 
 
 def test_runs_are_looked_for_where_the_time_of_the_exploration_is_over(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Of a robot that waits for one message at a time: what others may do is looked for in the whole net."""
+    net = NET.replace("data -> data, ", "").replace(
+        " code input (p); action moveJoint p", " code action moveHome ()"
+    )
+    net = "".join(x for x in net.splitlines(keepends=True) if " data" not in x)
+    channel = TOML[TOML.index("[[channel]]") : TOML.index('[[channel]]\nplace = "flag"')]
+    toml = TOML.replace(channel, "").replace('moveJoint = { command = "move_joint" }\n', "")
     monkeypatch.setattr(control, "CELL_PART", 0.0)
-    (answer,) = verified(tmp_path, NET, "never tokens(Finished) = 1")["properties"]
-    assert (answer["answer"], answer["about"]) == ("no", "cell"), answer
+    asked = "never tokens(Finished) = 1"
+    (answer,) = verified(tmp_path, net, asked, toml)["properties"]
+    assert (answer["answer"], answer["about"]) == ("no", "cell")
     assert answer["evidence"]["confirmed"] and Path(answer["evidence"]["trace"]).exists()
 
 

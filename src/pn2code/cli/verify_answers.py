@@ -44,7 +44,7 @@ def items_of(said: Said) -> Iterator[Item]:
         kind = kind_of(a)
         says = f"not known: {a.why}" if kind == "open" else said_of(a)
         says += f" [the closed net: {a.net}{net_run(a)}]" if a.net is not None else ""
-        says += f" (without a run: {a.no_run})" if a.no_run else ""
+        says += f" (no run: {a.no_run})" if a.no_run else ""
         e = a.evidence
         file, loop = (None, None) if e is None else (e.trace, e.loop)
         is_deadlock = a.about.kind == "deadlock"

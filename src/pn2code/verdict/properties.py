@@ -288,11 +288,13 @@ def _how_to_get_a_run(a: Answer, found: Exploration, control: Control | None) ->
     if seen.approximation is not None:
         return "an approximate exploration knows no way to what it has seen"
     alone = ["--no-found", *(["--no-controller"] if control is not None else [])]
-    alone += ["--property", shlex.quote(a.about.holds)]
-    return (
-        f"{clause(seen.why)} before one was found; try a larger limit, or ask nothing else: "
-        f"`{' '.join(alone)}`"
-    )
+    alone += ["--property", _quoted(a.about.holds)]
+    return f"{clause(seen.why)}; to look for it alone: `{' '.join(alone)}`"
+
+
+def _quoted(text: str) -> str:
+    """For a shell; names of places have apostrophes."""
+    return f'"{text}"' if "'" in text and not set(text) & set('"$`\\!') else shlex.quote(text)
 
 
 def had_time(answer: Answer, found: Exploration, control: Control | None) -> bool:

@@ -51,7 +51,7 @@ def remarks(a: Answer) -> list[str]:
     if a.net is not None:
         found.append(f"net: {a.net}{net_run(a)}. {a.net_why}")
     if a.no_run:
-        found.append(f"without a run: {a.no_run}")
+        found.append(f"no run: {a.no_run}")
     if a.rests_on is not None:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
         seen = f"{basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}"
