@@ -44,9 +44,7 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     assert len(lines) <= MOST_LINES
     assert "NO Non-blocking under control: there is a deadlock" in text
     assert "The run for `Non-blocking under control`" in text
-    assert (
-        "`Skipped` cannot occur: its guard `n = 3` is false for the tokens that are there." in text
-    )
+    assert "`Skipped` cannot occur: its guard `n = 3` is false with n = 2." in text
     assert lines[-1] == "Verdict: NO. 1 of 8 answers is not as it should be."
     assert [path.name for path in here.iterdir()] == ["cell.traces"]
 

@@ -61,10 +61,7 @@ def test_a_supervisor_that_does_not_wait(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium"])
     lines = [line.strip() for line in done.output.splitlines()]
     at = lines.index("After that nothing can occur:")
-    assert (
-        lines[at + 1]
-        == "`Next` cannot occur: its guard `n > 3` is false for the tokens that are there."
-    )
+    assert lines[at + 1] == "`Next` cannot occur: its guard `n > 3` is false with n = 1."
     assert lines[at + 2].startswith("Robot `robot1` waits for `flag` (robot1.tdl:")
 
 

@@ -14,6 +14,7 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.outcome import good_of
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES
+from pn2code.verify.report.properties_text import net_run
 from pn2code.verify.report.properties_text import said as said_of
 
 MOST_ITEMS = 8
@@ -42,7 +43,8 @@ def items_of(said: Said) -> Iterator[Item]:
     for a in said.answers:
         kind = kind_of(a)
         says = f"not known: {a.why}" if kind == "open" else said_of(a)
-        says += f" [the closed net: {a.net}]" if a.net is not None else ""
+        says += f" [the closed net: {a.net}{net_run(a)}]" if a.net is not None else ""
+        says += f" (no run: {a.no_run})" if a.no_run else ""
         e = a.evidence
         file, loop = (None, None) if e is None else (e.trace, e.loop)
         is_deadlock = a.about.kind == "deadlock"

@@ -17,6 +17,8 @@ from pn2code.verify.answers.path import play
 from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 
+MOST_NEAR = 6
+"""Transitions that are named where there is room for all of it."""
 MOST_STEPS = 3_000
 """A longer run is not played again: its last steps are shown as they are recorded."""
 
@@ -52,9 +54,10 @@ def why_all_disabled(
     Raises:
         GameError: an inscription raises an exception.
     """
+    near_ones = MOST_NEAR if most is None else why_disabled.MOST_REASONS
     running = said.control.running if said.control is not None else None
     if running is None or said.config is None:
-        return why_disabled.reasons(game)[:most]
+        return why_disabled.reasons(game, most=near_ones)[:most]
     if game.advance() and not is_deadlock:
         return []
     partition = running.partition
@@ -68,7 +71,8 @@ def why_all_disabled(
         if owner in stand and lacks_messages_alone(game, partition, t)
     }
     others = [t for t in game.net.transitions if t.index not in waiting and t.role is Role.OWN]
-    programs, near = [stand[k] for k in sorted(stand)], why_disabled.reasons(game, others)
+    programs = [stand[k] for k in sorted(stand)]
+    near = why_disabled.reasons(game, others, near_ones)
     near += _other_end(game, partition)
     room = len(programs) if most is None else max(most - len(near), 1)
     if len(programs) > room:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -243,14 +244,28 @@ def answered(
                 _confirmed(answer, asked.properties, opened.flat, opened, found, deadline, d)
             )
             continue
+        is_lost = before.net_evidence is not None and answer.net_evidence is None
+        if answer.net_evidence is not None and not is_about_bindings(answer.about):
+            of_net = _of_net(answer)
+            of_net = _confirmed(of_net, asked.properties, opened.flat, opened, found, deadline, d)
+            answer = replace(answer, net_evidence=of_net.evidence)
+        is_shownless = (
+            answer.answer == "no" and _has_run(answer.about.asked) and not answer.is_pumped
+        )
+        if is_shownless and answer.evidence is None and not had_time(answer, found, control):
+            answer = replace(answer, no_run=_how_to_get_a_run(answer, found, control))
         looked.append(answer)
         if answer.evidence is not None:
             continue  # it has been looked at
-        if before.evidence is not None or (
-            answer.answer == "no"
-            and _has_run(answer.about.asked)
-            and found.approximation is None
-            and had_time(answer, found, control)
+        if (
+            before.evidence is not None
+            or is_lost
+            or (
+                answer.answer == "no"
+                and _has_run(answer.about.asked)
+                and found.approximation is None
+                and had_time(answer, found, control)
+            )
         ):
             d.warning(
                 TRACE_UNWRITABLE,
@@ -259,6 +274,27 @@ def answered(
                 hint="give another folder with `--traces DIR`",
             )
     return tuple(looked)
+
+
+def _of_net(a: Answer) -> Answer:
+    """What is so of the closed net, of which there is a run, as an answer of its own."""
+    return Answer(a.about, a.net or "inconclusive", evidence=a.net_evidence)
+
+
+def _how_to_get_a_run(a: Answer, found: Exploration, control: Control | None) -> str:
+    """Why there is none, and what to type, as a clause."""
+    of_cell = control.found if a.cell and control is not None else None
+    seen = of_cell or found
+    if seen.approximation is not None:
+        return "an approximate exploration knows no way to what it has seen"
+    alone = ["--no-found", *(["--no-controller"] if control is not None else [])]
+    alone += ["--property", _quoted(a.about.holds)]
+    return f"{clause(seen.why)}; to look for it alone: `{' '.join(alone)}`"
+
+
+def _quoted(text: str) -> str:
+    """For a shell; names of places have apostrophes."""
+    return f'"{text}"' if "'" in text and not set(text) & set('"$`\\!') else shlex.quote(text)
 
 
 def had_time(answer: Answer, found: Exploration, control: Control | None) -> bool:
@@ -357,16 +393,24 @@ def _named(given: Sequence[Answer], folder: Path, stem: str) -> tuple[Answer, ..
     names = run_names(answer.about.name for answer in given)
     named = []
     for answer in given:
+        if answer.net_evidence is not None:
+            trace = folder / f"{stem}.closed-net.{names[answer.about.name]}.trace.jsonl"
+            named.append(replace(answer, net_evidence=_kept(answer.net_evidence, trace)))
+            continue
         if answer.evidence is None:
             named.append(answer)
             continue
         trace = folder / f"{stem}.{names[answer.about.name]}.trace.jsonl"
-        unnamed, loop = answer.evidence.trace, answer.evidence.loop
-        try:
-            if loop is not None:
-                write_loop(unnamed, loop)
-            unnamed.replace(trace)
-            named.append(replace(answer, evidence=replace(answer.evidence, trace=trace)))
-        except OSError:
-            named.append(replace(answer, evidence=None))
+        named.append(replace(answer, evidence=_kept(answer.evidence, trace)))
     return tuple(named)
+
+
+def _kept(run: Evidence, trace: Path) -> Evidence | None:
+    """The run in a file of another name; None: it cannot be called so."""
+    try:
+        if run.loop is not None:
+            write_loop(run.trace, run.loop)
+        run.trace.replace(trace)
+    except OSError:
+        return None
+    return replace(run, trace=trace)

@@ -304,7 +304,9 @@ def _in_other_orders(a: Answer, orders: OtherOrders) -> Answer:
         return replace(a, answer="inconclusive", why=why, evidence=None) if is_open else a
     of_net = None if a.net is None else replace(a, answer=a.net)
     is_open = of_net is not None and (kind(of_net) == "good" or orders.more)
-    return replace(a, net="inconclusive", net_why=clause("order")) if is_open else a
+    return (
+        replace(a, net="inconclusive", net_why=clause("order"), net_evidence=None) if is_open else a
+    )
 
 
 @contextmanager

@@ -31,7 +31,15 @@ HEAD = """
         ("trans T\n  in A : n\n  in B : m\n  in C : m", "places `B` and `C` are empty"),
         (
             "trans T guard [n > 3, m = n + 1]\n  in A : n\n  out B : m",
-            "its guard `n > 3, m = n + 1` is false for the tokens that are there",
+            "its guard `n > 3` is false with n = 1",
+        ),
+        (
+            "trans T guard [n > 3]\n  in E : n",
+            "its guard `n > 3` is false for the tokens that are there",
+        ),
+        (
+            "trans T guard [n > 3, 1 div (n - 1) > 0]\n  in A : n",
+            "its guard `n > 3` is false with n = 1",
         ),
         ("trans T\n  in A : 2", "place `A` holds 1`1, its arc takes 1`2"),
         ("trans T\n  in A : 2`n", "with n = 1 place `A` holds 1`1, its arc takes 2`1"),
@@ -126,3 +134,54 @@ def test_what_was_not_given_back_comes_first() -> None:
     game.fire(take)
     first, *_ = reasons(game)
     assert first == "`Feed` cannot occur: place `Free` is empty, which it was not at the start."
+
+
+JUDGED = (
+    HEAD
+    + """
+      place Judge : INT
+      place Go = 1
+      trans Ask
+        in Go
+        in A : n
+        out A : n + 1
+        out Judge : n
+      trans Form guard [n > 5]
+        in E : n
+        in D
+      trans Fill
+        in A : 5
+        in D
+        in E : n
+      trans Free
+        in C : n
+        in D
+      trans Pass guard [n = 0]
+        in Judge : n
+      trans Doubt guard [n > 1]
+        in Judge : n
+    """
+)
+
+
+def test_what_has_come_and_lacks_a_guard_alone_is_nearest() -> None:
+    """`Form` and `Fill` have more tokens, but these rest where they were at the start."""
+    game = Game(flat(JUDGED))
+    (ask,) = game.enabled()
+    game.fire(ask)
+    assert reasons(game, most=6) == [
+        "`Pass` cannot occur: its guard `n = 0` is false with n = 1.",
+        "`Doubt` cannot occur: its guard `n > 1` is false with n = 1.",
+        "`Ask` cannot occur: place `Go` is empty, which it was not at the start.",
+        "`Form` cannot occur: its guard `n > 5` is false for the tokens that are there.",
+        "`Fill` cannot occur: place `A` holds 1`2, its arc takes 1`5.",
+        "`Free` cannot occur: place `C` is empty.",
+    ]
+    assert reasons(game) == reasons(game, most=6)[:MOST_REASONS]
+
+
+def test_what_a_guard_keeps_from_an_exception_is_no_way() -> None:
+    """Without its guard `T` would divide by zero where it takes tokens."""
+    text = "      trans T guard [n > 3]\n        in A : n\n        in E : 6 div (n - 1)\n"
+    (found,) = reasons(Game(flat(HEAD + text)))
+    assert found.startswith("`T` cannot occur: ")

@@ -16,7 +16,7 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
-from pn2code.ml.core.terms import Pat, Symbol
+from pn2code.ml.core.terms import Exp, Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -451,10 +451,19 @@ class Enabling:
             if s.colset is not None and not self.colours.legal(s.colset, binding[s]):
                 text = variable_text(self.colours, s, binding[s])
                 return f"{text} is not in the colour set `{s.colset.name}` of variable `{s.name}`"
-        for i, guard in enumerate(t.guards):
-            if not self._guard(t, i, found):
-                return f"the guard `{one_line(guard.span.text)}` is false"
-        return None
+        guard = self._first_false(t, found)
+        return None if guard is None else f"the guard `{one_line(guard.span.text)}` is false"
+
+    def false_guard(self, t: FlatTransition, binding: Binding) -> Exp | None:
+        """The first guard that is false with a binding; None: there is none.
+
+        Raises:
+            GameError: it raised an exception.
+        """
+        return self._first_false(t, {**self.constants, **{s.uid: v for s, v in binding.items()}})
+
+    def _first_false(self, t: FlatTransition, found: Found) -> Exp | None:
+        return next((g for i, g in enumerate(t.guards) if not self._guard(t, i, found)), None)
 
     def shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
         """In words: the tokens that are missing."""

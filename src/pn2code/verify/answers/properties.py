@@ -32,6 +32,15 @@ class Evidence:
     loop: int | None
     confirmed: bool = False
 
+    def row(self) -> dict[str, Any]:
+        """For `--json`."""
+        return {
+            "trace": str(self.trace),
+            "steps": self.steps,
+            "loop": self.loop,
+            "confirmed": self.confirmed,
+        }
+
 
 @frozen
 class Answer:
@@ -47,6 +56,8 @@ class Answer:
         kept: whether a "yes" is kept when the programs of a cell do less than what was looked at.
         cell: the answer is about a cell as it runs.
         net: then what is so of the closed net, where that is known and differs; `net_why` says why it differs.
+        net_evidence: a run of the closed net that shows it, where nothing is known of the cell.
+        no_run: why there is no run where one would show the answer, and how to get it, as a clause.
     """
 
     about: m.Property
@@ -59,6 +70,8 @@ class Answer:
     cell: bool = False
     net: Verdict | None = None
     net_why: str = ""
+    net_evidence: Evidence | None = None
+    no_run: str = ""
     is_pumped: bool = False
     """a run shows it that is too long to be written: it repeats a round that can be repeated for ever"""
     is_of_part: bool = False
@@ -81,15 +94,6 @@ class Answer:
 
     def row(self) -> dict[str, Any]:
         """For `--json`."""
-        e = self.evidence
-        run = None
-        if e is not None:
-            run = {
-                "trace": str(e.trace),
-                "steps": e.steps,
-                "loop": e.loop,
-                "confirmed": e.confirmed,
-            }
         return {
             "name": self.about.name,
             "says": self.about.says,
@@ -103,11 +107,16 @@ class Answer:
             "node": self.node,
             "kept": self.kept,
             "about": "cell" if self.cell else "net",
-            "net": {"answer": self.net, "why": self.net_why} if self.net else None,
-            "evidence": run,
+            "net": self._net_row() if self.net else None,
+            "evidence": None if self.evidence is None else self.evidence.row(),
+            "no_run": self.no_run or None,
             "rests_on": self.rests_on,
             "assumes": list(self.assumes),
         }
+
+    def _net_row(self) -> dict[str, Any]:
+        run = None if self.net_evidence is None else self.net_evidence.row()
+        return {"answer": self.net, "why": self.net_why, "evidence": run}
 
 
 def answers(

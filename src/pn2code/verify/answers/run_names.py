@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 
 _LONGEST = 60
-_OTHERS = re.compile(r"controller-|(dead|error)-\d|geometry|unbounded$", re.IGNORECASE)
+_OTHERS = re.compile(r"controller-|closed-net\.|(dead|error)-\d|geometry|unbounded$", re.IGNORECASE)
 """How those of other runs of `verify` and `check` begin, after the name of the net."""
 
 

@@ -1,24 +1,30 @@
-"""Why nothing can occur in a marking: the transitions that lack least, and what each of them lacks.
+"""Why nothing can occur in a marking: the transitions that are nearest to it, and what each of them lacks.
 
-    `Order` cannot occur: its guard `n > 9` is false for the tokens that are there.
-    `StartPress` cannot occur: place `placed` is empty.
-
+    `Doubt` cannot occur: its guard `length l >= 2` is false with l = [3].
     `Feed` cannot occur: place `TableFree` is empty, which it was not at the start.
+    `StartPress` cannot occur: place `placed` is empty.
     `Finish` cannot occur: place `Cleans` holds 2`(), its arc takes 3`().
 
-A transition that could occur if its empty places held what they held at the start comes first: somebody did not give
-back what he took. A transition none of whose input places holds a token is not worth a line. Nor is one whose only
-tokens are those that never leave their places (of a mode, a counter), if there are others: such a token says nothing
-about who is near. Of those that lack equally many tokens the ones that have most come first. It is the reference token
-game that answers.
+In this order:
+
+* all tokens are there, one of them in a place that was empty at the start, and a guard is false (or a place inhibits
+  it): something has come there, and cannot go on;
+* it could occur if its empty places held what they held at the start: somebody did not give back what he took;
+* all others: first those of which only the guard is false, then those that lack a token, then two, and so on.
+
+A transition none of whose input places holds a token is not worth a line. Nor is one whose only tokens are those that
+never leave their places (of a mode, a counter), if there are others: such a token says nothing about who is near. Of
+those that lack equally many tokens the ones that have most come first. It is the reference token game that answers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatTransition
 from pn2code.semantics.evaluation.evaluate import variables
@@ -37,12 +43,23 @@ _MOST_BINDINGS = 1_000
 """So many are asked which places hold too little for them."""
 
 
-def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[str]:
-    """A sentence for each of the transitions that lack least; empty where something can occur.
+@frozen
+class _Lack:
+    """What keeps a transition from occurring, as a clause, and so many tokens are missing; 0: it is something else."""
+
+    says: str
+    tokens: int
+
+
+def reasons(
+    game: Game, among: Iterable[FlatTransition] | None = None, most: int = MOST_REASONS
+) -> list[str]:
+    """A sentence for each of the transitions that are nearest; empty where something can occur.
 
     Args:
         game: in the marking.
         among: the transitions that are looked at; None: all.
+        most: so many sentences.
 
     Raises:
         GameError: an inscription raises an exception.
@@ -50,23 +67,26 @@ def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[s
     if game.advance():
         return []
     kept = _kept(game)
-    found: list[tuple[int, bool, int, str]] = []
+    first = game.own_initial_marking.places
+    found: list[tuple[tuple[int, int, int], str]] = []
     for t in game.net.transitions if among is None else among:
         inputs = list(_inputs(t))
         empty = {a.place for a in inputs if not _holds(game.marking, a.place)}
         if inputs and len(empty) == len({a.place for a in inputs}):
             continue
         name = t.name.rpartition(".")[2]
-        arrived = len({a.place for a in inputs} - empty - kept)
+        arrived = {a.place for a in inputs} - empty - kept
         was_possible = bool(empty) and _is_possible_with_first(game, t, empty)
         lack = _lack(game, t, sorted(empty))
-        if was_possible:
-            lack += f", which {'it was' if len(empty) == 1 else 'they were'} not at the start"
-        row = (0 if was_possible else len(empty), not was_possible, arrived)
-        found.append((*row, f"`{name}` cannot occur: {lack}."))
-    near = [row for row in found if row[2] or not row[0]] or found
-    least = sorted(near, key=lambda row: (row[0], row[1], -row[2]))[:MOST_REASONS]
-    return [text for *_, text in least]
+        says = lack.says
+        if empty and all(any(True for _ in first[p]) for p in empty):
+            says += f", which {'it was' if len(empty) == 1 else 'they were'} not at the start"
+        has_come = lack.tokens == 0 and any(not any(True for _ in first[p]) for p in arrived)
+        group = 0 if has_come else 1 if was_possible else 2
+        row = (group, 0 if was_possible else lack.tokens, -len(arrived))
+        found.append((row, f"`{name}` cannot occur: {says}."))
+    near = [x for x in found if x[0][2] or not x[0][1]] or found
+    return [text for _, text in sorted(near, key=lambda x: x[0])[:most]]
 
 
 def _is_possible_with_first(game: Game, t: FlatTransition, empty: set[int]) -> bool:
@@ -100,22 +120,50 @@ def _holds(marking: Marking, place: int) -> bool:
     return any(True for _ in marking.places[place])
 
 
-def _lack(game: Game, t: FlatTransition, empty: list[int]) -> str:
-    """What keeps the transition from occurring, as a clause."""
+def _lack(game: Game, t: FlatTransition, empty: list[int]) -> _Lack:
+    """What keeps the transition from occurring."""
     if empty:
         names = [f"`{game.net.places[p].short}`" for p in empty]
-        return (
+        says = (
             f"place {names[0]} is empty" if len(names) == 1 else f"places {_and(names)} are empty"
         )
+        return _Lack(says, len(empty))
     marking = game.marking
     for arc in t.arcs:
         if arc.kind is ArcKind.INHIBITOR and game.enabling.inhibited(arc, marking):
-            return f"place `{game.net.places[arc.place].short}` inhibits it"
-    if t.guards and _is_possible_without_guards(game, t):
-        guards = ", ".join(" ".join(g.span.text.split()) for g in t.guards)
-        shown = guards if len(guards) <= _MOST_TEXT else f"{guards[: _MOST_TEXT - 3]}..."
-        return f"its guard `{shown}` is false for the tokens that are there"
-    return _unfit(game, t)
+            return _Lack(f"place `{game.net.places[arc.place].short}` inhibits it", 0)
+    if t.guards:
+        ways = _without_guards(game, t)
+        if ways:
+            return _Lack(_false_guard(game, t, ways), 0)
+    return _Lack(_unfit(game, t), 1)
+
+
+def _false_guard(game: Game, t: FlatTransition, ways: list[Binding]) -> str:
+    """That the guard is false, as a clause; with the values where the tokens that are there leave no choice."""
+    guards, given = [*t.guards], ""
+    if len(ways) == 1:
+        (binding,) = ways
+        with suppress(
+            GameError
+        ):  # what a guard before it keeps from an exception is not asked alone
+            false = game.enabling.false_guard(t, binding)
+            guards = guards if false is None else [false]
+        used = {s for g in guards for s in variables(g)}
+        given = ", ".join(
+            f"{s.name} = {' '.join(variable_text(game.colours, s, v).split())}"
+            for s, v in binding.items()
+            if s in used
+        )
+    text = _shortened(", ".join(" ".join(g.span.text.split()) for g in guards))
+    with_ = (
+        f"with {given}" if given and len(given) <= _MOST_TEXT else "for the tokens that are there"
+    )
+    return f"its guard `{text}` is false {with_}"
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _MOST_TEXT else f"{text[: _MOST_TEXT - 3]}..."
 
 
 def _unfit(game: Game, t: FlatTransition) -> str:
@@ -196,13 +244,19 @@ def _and(names: list[str]) -> str:
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
-def _is_possible_without_guards(game: Game, t: FlatTransition) -> bool:
-    """Whether it is the guard alone that keeps it from occurring.
+def _without_guards(game: Game, t: FlatTransition) -> list[Binding]:
+    """With which bindings it could occur if it were not for the guards, two at most.
 
-    Guards that give a variable its value still do so: that is a part of the plan.
+    Guards that give a variable its value still do so: that is a part of the plan. What the guards keep inscriptions
+    from, an exception, is no way.
     """
     bare = replace(t, guards=())
     net = replace(
         game.net, transitions=tuple(bare if x.index == t.index else x for x in game.net.transitions)
     )
-    return next(Enabling(net, game.evaluator).enabled(bare, game.marking), None) is not None
+    found: list[Binding] = []
+    try:
+        found.extend(islice(Enabling(net, game.evaluator).enabled(bare, game.marking), 2))
+    except (GameError, MlException):
+        return found
+    return found

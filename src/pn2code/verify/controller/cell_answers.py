@@ -254,4 +254,6 @@ def _one(of_net: Answer, of_cell: Answer, partition: Partition) -> Answer:
         return found  # without time everything of the closed net happens at once
     if of_net.answer == found.answer or of_net.answer == "inconclusive":
         return found
-    return replace(found, net=of_net.answer, net_why=reason(partition))
+    is_open = found.answer == "inconclusive"
+    run = of_net.evidence if is_open else None
+    return replace(found, net=of_net.answer, net_why=reason(partition), net_evidence=run)

@@ -89,6 +89,8 @@ ORDERS_FROM = 20_000
 """States among which it is looked first whether the order of firings matters, where not all states are looked at."""
 CELL_PART = 0.8
 """Of the time, what the exploration may take that most answers come from."""
+HUNT_PART = 0.8
+"""Of what is left then, what the search for runs may take; the rest is for what makes the states so many (`crowd`)."""
 
 # --- questions -----------------------------------------------------------------------------------
 
@@ -290,8 +292,11 @@ def examine(
             answers = turned
         if is_late:
             answers = _late(answers)
-        elif in_counts is None and found.why in REACHED:
-            answers = _hunted(running, plan, limits, options, answers)
+        if in_counts is None and found.why in REACHED:
+            # What was seen may be too much to tell how it comes to what is wrong; a run to it need not be.
+            hunted = replace(limits, deadline=limits.deadline.share(HUNT_PART))
+            nothing = {"answer": "unknown", "why": found.why, "trace": None}
+            answers = _hunted(running, plan, hunted, options, answers or [nothing] * count)
         options = replace(options, evidence=Path(name))
 
         def explore_with_moves(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
@@ -420,13 +425,31 @@ def _hunted(
 
     own = replace(options, bindings=(), whole=())
     mine = [i for i, p in enumerate(plan.properties.properties) if not p.of_net]
+    failing = [k for k, i in enumerate(mine) if _fails_in_a_marking(plan.properties.properties[i])]
     found = hunt(
-        [properties[i] for i in mine], [rows[i] for i in mine], lines, limits, own, explored
+        [properties[i] for i in mine],
+        [rows[i] for i in mine],
+        lines,
+        limits,
+        own,
+        explored,
+        failing,
     )
     all_rows = list(rows)
     for i, row in zip(mine, found, strict=True):
         all_rows[i] = row
     return tuple(all_rows)
+
+
+def _fails_in_a_marking(p: m.Property) -> bool:
+    """Whether a run to one marking shows that a property does not come out as expected."""
+    match p.asked:
+        case m.Bound():
+            return p.expect
+        case m.Invariant(_, wanted):
+            return p.expect == wanted
+        case _:
+            return False
 
 
 def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:

@@ -13,13 +13,16 @@ is about as long as a few runs. What a formula is false of tells where to look:
     every e is followed by q
     all else                              so many states
 
+Something is known to be false without a run where the time was over before its run could be written (`shownless`): a
+search for this one comes first, and has a part of the time.
+
 What has been found is not said because of this: the explorer answers what is so in the part of the space that was seen,
 whatever the rest is like (cnative/src/explore/query/explore_ctl.c), with a run, and the token game plays the run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +39,8 @@ FURTHER = 14
 RUNS = 3
 LEAST = 2_000
 """States of these."""
+RUN_PART = 0.5
+"""Of the time that is left, what the search for a run may take of something that is known already."""
 
 Explored = Callable[[Limits, ExploreOptions], Exploration | None]
 
@@ -47,8 +52,9 @@ def hunt(
     limits: Limits,
     options: ExploreOptions,
     explored: Explored,
+    failing: Collection[int] = (),
 ) -> tuple[Mapping[str, Any], ...]:
-    """The rows, of which some that were open have an answer.
+    """The rows, of which some that were open have an answer, and some that were not have a run.
 
     Args:
         properties: what is asked.
@@ -56,16 +62,32 @@ def hunt(
         lines: what the explorer has to know of programs, in front of each question.
         limits, options: of an exploration.
         explored: explores.
+        failing: the numbers of those for which a run is wanted if it is known that they fail.
     """
     found = list(rows)
+    for i in failing:
+        row, own = rows[i], _asking(properties[i], i, lines, options)
+        if is_shownless(row):
+            part = replace(limits, deadline=limits.deadline.share(RUN_PART))
+            said = _searched(part, own, explored)
+            if said is not None and said["answer"] == row["answer"] and said.get("trace"):
+                found[i] = {**said, "part": True}
     for i, (asked, row) in enumerate(zip(properties, rows, strict=True)):
         # Of a part it is not known what is fair.
         is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
         if row["answer"] == "unknown" and not is_fair:
-            own = replace(options, questions=lines + question(asked), stem=f"hunt-{i}", traces=None)
-            said = _searched(limits, own, explored)
+            said = _searched(limits, _asking(asked, i, lines, options), explored)
             found[i] = row if said is None else {**said, "part": True}
     return tuple(found)
+
+
+def is_shownless(row: Mapping[str, Any]) -> bool:
+    """Whether something is known that a run would show, and the run is not."""
+    return row["answer"] == "no" and not row.get("trace")
+
+
+def _asking(asked: m.Asked, number: int, lines: str, options: ExploreOptions) -> ExploreOptions:
+    return replace(options, questions=lines + question(asked), stem=f"hunt-{number}", traces=None)
 
 
 def _searched(

@@ -49,7 +49,9 @@ def remarks(a: Answer) -> list[str]:
     if a.about.of_net:
         found.append("about the closed net alone")
     if a.net is not None:
-        found.append(f"net: {a.net}. {a.net_why}")
+        found.append(f"net: {a.net}{net_run(a)}. {a.net_why}")
+    if a.no_run:
+        found.append(f"no run: {a.no_run}")
     if a.rests_on is not None:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
         seen = f"{basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}"
@@ -57,6 +59,11 @@ def remarks(a: Answer) -> list[str]:
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found
+
+
+def net_run(a: Answer) -> str:
+    """Where the run of the closed net is that shows what is so of that, as it is said behind it."""
+    return "" if a.net_evidence is None else f" (run: {a.net_evidence.trace})"
 
 
 _VALUES = {"bound": "most tokens", "response": "longest wait"}
