@@ -169,7 +169,7 @@ class _Look:
             with deadline.share(_OF_CYCLES).enforced():
                 self.search.explore(HowFar(say, "measuring cycles", noun="situations"))
         except TimeIsOverError:
-            self.search.why = "time"
+            self.search.why = self.search.why or "time"
         return Layout(
             self.name,
             tuple(self._commands()),

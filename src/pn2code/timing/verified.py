@@ -177,9 +177,9 @@ class _Judge:
             found = open_(cycle.why)
             if cycle.bounded is not None:
                 found = self._bounded(a, one, layout, (first, second), limit)
-            seen = self._seen(a, one, (first, second), limit)
+            seen = seen_too_long(search, first, second, limit)
             if seen is not None:
-                return seen
+                return self._shown(a, one, seen, "no", None)
             own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
             if own is None or found.answer == "yes":
                 return found
@@ -237,17 +237,6 @@ class _Judge:
             else:
                 return self._yes(a, slow, AT_MOST)
         return Answer(a.about, "inconclusive", where + why, cell=True)
-
-    def _seen(self, a: Answer, one: Measured, events: tuple[Is, Is], limit: int) -> Answer | None:
-        """Where a limit has ended the search: a *no* by a run that waits too long in what was seen."""
-        search = one.search
-        if search.why not in ("situations", "time") or search.doings.why or search.doings.stops:
-            return None
-        over = {i for i, (state, *_) in enumerate(search.situations) if state in search.graph.over}
-        wait = seen_wait(search.surely(), *events, over | search.ends)
-        if wait.why == "repeats" or (wait.ns is not None and wait.ns - TIE > limit):
-            return self._shown(a, one, wait, "no", None)
-        return None
 
     def _by_own_work(
         self, a: Answer, one: Measured, events: tuple[Is, Is], limit: int
@@ -331,6 +320,19 @@ def surely_waited(search: Search, wait: Wait, first: Is, second: Is) -> tuple[in
     if found.ns is None or found.ns < wait.ns - held_up:
         return wait.ns - held_up, wait
     return found.ns, found
+
+
+def seen_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | None:
+    """Where a limit has ended the search: how some run waits for longer than `limit` (ns) in what was seen.
+
+    None: none was seen, or not only a limit is why not all is known.
+    """
+    if search.why not in ("situations", "time") or search.doings.why or search.doings.stops:
+        return None
+    over = {i for i, (state, *_) in enumerate(search.situations) if state in search.graph.over}
+    wait = seen_wait(search.surely(), first, second, over | search.ends)
+    is_longer = wait.why == "repeats" or (wait.ns is not None and wait.ns - TIE > limit)
+    return wait if is_longer else None
 
 
 def _bounds(cycle: Cycle) -> str:

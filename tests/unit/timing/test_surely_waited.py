@@ -11,8 +11,8 @@ from pn2code.cell.partition import OwnerKind
 from pn2code.timing.answers import Cycle, Ending, between
 from pn2code.timing.doings import NS, Doing, Doings
 from pn2code.timing.longest import Arc
-from pn2code.timing.search import TIE, Search
-from pn2code.timing.verified import surely_waited
+from pn2code.timing.search import MOST, TIE, Search
+from pn2code.timing.verified import seen_too_long, surely_waited
 from pn2code.timing.waits import longest_wait
 
 MS = NS // 1000
@@ -20,7 +20,7 @@ ASK, WORK, END = 0, 1, 2
 OVER, CALM, STOPPED = 8, 9, 10
 
 
-def timed_cell(work_ns: int) -> Search:
+def timed_cell(work_ns: int, most: int = MOST) -> Search:
     """A supervisor in a timed net asks a device, which works, and ends; no time stamp lies ahead."""
     owners = [
         SimpleNamespace(index=0, kind=OwnerKind.SUPERVISOR),
@@ -46,7 +46,7 @@ def timed_cell(work_ns: int) -> Search:
         of=lambda element, _: work if element == WORK else None,
         waits=lambda _: 0,
     )
-    search = Search(cast(Doings, doings))
+    search = Search(cast(Doings, doings), most)
     search.explore()
     return search
 
@@ -62,6 +62,18 @@ def test_whole_seconds_in_which_nothing_ends_are_waited_for() -> None:
         surely, shown = surely_waited(search, wait, first, second)
         assert ns - TIE <= surely <= ns, (ns, surely)
         assert [mark for _, mark in shown.way if mark >= 0] == [ASK, WORK, END]
+
+
+def test_what_was_seen_before_a_limit_may_be_too_long() -> None:
+    first, second = (lambda mark: mark == ASK), (lambda mark: mark == END)
+    search = timed_cell(18_456 * MS, 4)
+    assert search.why == "situations"
+    found = seen_too_long(search, first, second, 16 * NS)
+    assert found is not None and found.ns == 17 * NS
+    assert seen_too_long(search, first, second, 17 * NS) is None
+    search.why = "overtaken"
+    assert seen_too_long(search, first, second, 16 * NS) is None
+    assert seen_too_long(timed_cell(18_456 * MS), first, second, 16 * NS) is None
 
 
 @dataclass
