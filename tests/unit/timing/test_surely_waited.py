@@ -68,12 +68,12 @@ def test_what_was_seen_before_a_limit_may_be_too_long() -> None:
     first, second = (lambda mark: mark == ASK), (lambda mark: mark == END)
     search = timed_cell(18_456 * MS, 4)
     assert search.why == "situations"
-    found = seen_too_long(search, first, second, 16 * NS)
-    assert found is not None and found.ns == 17 * NS
-    assert seen_too_long(search, first, second, 17 * NS) is None
+    found = seen_too_long(search, first, second, 17 * NS)
+    assert found is not None and found.ns == 18 * NS, "then the work is not done yet"
+    assert seen_too_long(search, first, second, 18 * NS) is None
     search.why = "overtaken"
-    assert seen_too_long(search, first, second, 16 * NS) is None
-    assert seen_too_long(timed_cell(18_456 * MS), first, second, 16 * NS) is None
+    assert seen_too_long(search, first, second, 17 * NS) is None
+    assert seen_too_long(timed_cell(18_456 * MS), first, second, 17 * NS) is None
 
 
 @dataclass
