@@ -204,16 +204,20 @@ class Binder:
             )
             return None
         is_whole = self._net.timed and not self._net.real_time
-        if p.time is not None and is_whole and "." in p.time:
+        # What the commands of a cell take is no whole number, whatever its net counts.
+        of_clock = written.of_net or not self._is_cell
+        if p.time is not None and is_whole and of_clock and "." in p.time:
+            whole = p.time.partition(".")[0]
             self._d.error(
                 codes.FORM,
                 f"the clock of the net counts integers, not `{p.time}`",
                 written.holds.span(),
-                hint="write a whole number of units",
+                hint=f"`within {whole} time` says the same, as each wait is a whole number of units",
             )
             return None
         of_commands = p.time is not None and not self._net.timed
-        return "response", m.Response(first, second, p.firings, p.time, of_commands)
+        found = m.Response(first, second, p.firings, p.time, of_commands, is_whole)
+        return "response", found
 
     def _fair(self, fair: Sequence[t.Fair], written: Written) -> tuple[m.Fairness, ...] | None:
         more = [parse_fair(text, self._d) for text in written.fair]

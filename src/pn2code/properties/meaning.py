@@ -161,6 +161,7 @@ class Response:
 
     Args:
         of_commands: the net has no time, so that only the commands of its cell take some (`verify --durations`).
+        of_integers: the clock of the net counts whole units, so that no wait of the closed net lies between two.
     """
 
     first: Formula
@@ -168,6 +169,13 @@ class Response:
     firings: int | None
     time: str | None
     of_commands: bool = False
+    of_integers: bool = False
+
+    @property
+    def units(self) -> str:
+        """The most that the clock of the closed net may go on: of 2.5 units those that an integer clock counts, 2."""
+        assert self.time is not None
+        return self.time.partition(".")[0] if self.of_integers else self.time
 
 
 Asked = Invariant | Bound | Branching | Linear | Response

@@ -59,8 +59,8 @@ class Questions:
                 self.asked.append(
                     f"? within-firings {self._event(first)} {self._event(second)} {ENDLESS}"
                 )
-            case m.Response(first, second, firings, time):
-                limit = f"firings {firings}" if firings is not None else f"time {time}"
+            case m.Response(first, second, firings):
+                limit = f"firings {firings}" if firings is not None else f"time {asked.units}"
                 word, value = limit.split(" ")
                 events = f"{self._event(first)} {self._event(second)}"
                 self.asked.append(f"? within-{word} {events} {value}")

@@ -32,8 +32,10 @@ UNSUPPORTED_EXPRESSION = register(
     "Scripts have integers, reals, Booleans, strings, poses, lists of these, arithmetic, comparisons, conditionals and "
     "field selection. Functions of the net are inlined. Of lists there are `[a, b]`, `a :: l`, the patterns `[]` and "
     "`a :: l`, `hd`, `tl`, `length`, `null`, `List.nth`, `rev` and `^^`; one transition for each item goes along a "
-    "list. Functions that take functions (`map`, `sort`), references, exceptions, recursion, trigonometry and random "
-    "numbers belong on the supervisor's pages.",
+    "list. A list that is put into a place whose items have bounds (a range, a subset) is made of variables of this "
+    "colour set and of items that are written out, with `::`, `^^`, `rev`, `tl` of a variable, and `if` between such "
+    "lists: of others a script cannot ask whether all their items are in it. Functions that take functions (`map`, "
+    "`sort`), references, exceptions, recursion, trigonometry and random numbers belong on the supervisor's pages.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-robot-colset",

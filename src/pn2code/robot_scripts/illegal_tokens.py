@@ -13,7 +13,7 @@ from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, FlatPlace
 from pn2code.robot_scripts import membership, unread
 from pn2code.robot_scripts.evaluate import Evaluator
-from pn2code.robot_scripts.failing import known_where
+from pn2code.robot_scripts.failing import Known, known_where
 from pn2code.robot_scripts.ir import Chain, Line, Node
 from pn2code.robot_scripts.machine import Machine
 from pn2code.robot_scripts.names import Names
@@ -53,6 +53,10 @@ def stops(
     taken = {v.uid for v in transition.variables} - results
     known = known_where(names, situation.ordered).with_colours(transition.variables, taken, env)
     out: dict[Node, None] = {}
+
+    def where(known: Known) -> membership.Where:
+        return membership.Where(taken, known, lambda e: pure.evaluate(e, env))
+
     for arc in transition.arcs:
         if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
             continue
@@ -68,9 +72,9 @@ def stops(
                 for condition, holds in path:
                     there = there.with_condition(condition, holds)
                 for e in values or ():
-                    value = pure.evaluate(e, env)
-                    asked = membership.of_token(place.colset, value, e, taken, there)
+                    asked = membership.of_token(place.colset, e, where(there))
                     if asked:
+                        value = pure.evaluate(e, env)
                         out[_stop(transition.short, place, value, path, asked)] = None
             except UnsupportedError as problem:
                 if arc.place not in machine.sinks:
@@ -78,7 +82,7 @@ def stops(
 
                 def plain(part: Colset, e: core.Exp) -> bool:
                     try:
-                        return not membership.of_token(part, pure.evaluate(e, env), e, taken, known)
+                        return not membership.of_token(part, e, where(known))
                     except UnsupportedError:
                         return False
 

@@ -10,18 +10,30 @@ Where all values that may come are in the colour set, nothing is asked.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Callable, Iterator, Set
 from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts import lists
 from pn2code.robot_scripts.failing import Known
-from pn2code.robot_scripts.operations import builtin, item_of, others_of
+from pn2code.robot_scripts.operations import builtin, item_of, logical_not, others_of
 from pn2code.robot_scripts.unsupported import UnsupportedError
-from pn2code.robot_scripts.values import Rec, Rows, Scalar, Value, scalars_in, select
+from pn2code.robot_scripts.values import (
+    FALSE,
+    TRUE,
+    Rec,
+    Rows,
+    Scalar,
+    Value,
+    conjunction,
+    disjunction,
+    scalars_in,
+    select,
+)
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
@@ -72,18 +84,33 @@ def conditions(
         ) from None
 
 
-def of_token(
-    colset: Colset, value: Value, e: core.Exp, taken: Set[int], known: Known
-) -> list[t.Expression]:
+@frozen
+class Where:
+    """Where a token is put.
+
+    Args:
+        taken: the variables (by their uid) whose values are in their colour sets, because an arc or an equation binds
+            them.
+        known: of numbers.
+        value_of: the value of an expression of the net there.
+    """
+
+    taken: Set[int]
+    known: Known
+    value_of: Callable[[core.Exp], Value]
+
+    def under(self, condition: t.Expression, holds: bool) -> Where:
+        """The same where a condition holds, or does not."""
+        return replace(self, known=self.known.with_condition(condition, holds))
+
+
+def of_token(colset: Colset, e: core.Exp, there: Where) -> list[t.Expression]:
     """What has to be so of a token that a place of a colour set gets.
 
     Args:
         colset: of the place.
-        value: of the token.
         e: the expression of the net that gives it.
-        taken: the variables (by their uid) whose values are in their colour sets, because an arc or an equation binds
-            them.
-        known: of numbers.
+        there: what is known.
 
     Raises:
         UnsupportedError: scripts cannot ask it.
@@ -91,16 +118,23 @@ def of_token(
     try:
         return [
             condition
-            for part, inner, of in _components(colset, value, e, e.span)
-            for condition in _of_part(part, inner, of, taken, known, e.span)
+            for part, inner, of in _components(colset, there.value_of(e), e, e.span)
+            for condition in _of_part(part, inner, of, there, e.span)
         ]
     except _UnaskableError as problem:
         place = problem.args[0]
         raise UnsupportedError(
             f"what is put here has to be in colour set `{place.name}`, and a script cannot ask whether a value is in "
-            "it: put the value of a variable of this colour set, or a constant",
+            "it: put the value of a variable of this colour set, or a constant"
+            + (_OF_LISTS if place.kind is Kind.LIST else ""),
             e.span,
         ) from None
+
+
+_OF_LISTS = (
+    ", or a list that is made of such variables and of items that are written out (`item :: l`, `l ^^ [item]`, "
+    "`rev l`, `if c then item :: l else l`)"
+)
 
 
 def _components(
@@ -119,70 +153,114 @@ def _components(
 
 
 def _of_part(
-    c: Colset, value: Value, e: core.Exp | None, taken: Set[int], known: Known, span: Span
+    c: Colset, value: Value, e: core.Exp | None, there: Where, span: Span
 ) -> list[t.Expression]:
     """What has to be so of a part of a token."""
-    source = _source(e, taken)
+    source = _source(e, there.taken)
     if source is not None and source.resolved == c:
         return []
-    items = _of_items(c, value, e, taken, known)
-    return list(_unless_known(c, value, source, known, span)) if items is None else items
-
-
-def _of_items(
-    c: Colset, value: Value, e: core.Exp | None, taken: Set[int], known: Known
-) -> list[t.Expression] | None:
-    """What has to be so of a list some items of which are written out, `n - 1 :: l` or `[n]`: these, and its length.
-
-    None: some of its other items are not known, or its items cannot be asked one by one.
-    """
     element = c.components[0].resolved if c.kind is Kind.LIST and c.components[0] else None
-    if element is None or e is None or not has_bounds(element):
-        return None
-    if not isinstance(value, Rows) and element.kind not in _ASKED:
-        return None
-    assert isinstance(value, Scalar | Rows), "it is a list"
-    found = value
-    left: core.Exp | None = e
-    asked: list[t.Expression] = []
-    written = 0
-    while isinstance(left, core.Apply | core.ListExp):
-        if isinstance(left, core.ListExp):
-            if any(lists.items_of(x.exp) is None for x in scalars_in(found)):
+    if element is not None and e is not None and has_bounds(element):
+        assert isinstance(value, Scalar | Rows), "it is a list"
+        found = _items(element, value, e, there)
+        if found is not None:
+            length = replace(c, name="", low=found.low, high=found.high)
+            return [*found.asked, *_unless_known(c, value, length, there.known, e.span)]
+    return list(_unless_known(c, value, source, there.known, span))
+
+
+@frozen
+class _Items:
+    """Of a list: what has to be so of its items, and how many there are at least and at most (None: any number)."""
+
+    asked: tuple[t.Expression, ...]
+    low: int
+    high: int | None
+
+    def before(self, other: _Items) -> _Items:
+        """Of a list with the items of both."""
+        high = None if self.high is None or other.high is None else self.high + other.high
+        return _Items((*self.asked, *other.asked), self.low + other.low, high)
+
+
+def _items(element: Colset, value: Scalar | Rows, e: core.Exp, there: Where) -> _Items | None:
+    """Of a list some items of which are written out: `n - 1 :: l`, `l ^^ [n]`, `if a then [n] else l`.
+
+    Args:
+        element: the colour set that the items are to have.
+
+    None: some of its other items are not known.
+    """
+    match e:
+        case core.ListExp(items):
+            if any(lists.items_of(x.exp) is None for x in scalars_in(value)):
                 return None
-            pairs = []
-            for item in left.items:
-                pairs.append((item_of(found), item))
-                found = others_of(found)
-            left = None
-        else:
-            cons = _cons(left)
-            if cons is None:
-                break
-            item, left = cons
-            pairs = [(item_of(found), item)]
-            found = others_of(found)
-        for one, of in pairs:
-            source = _source(of, taken)
-            if source is None or source.resolved != element:
-                for part, inner, given in _components(element, one, of, of.span):
-                    asked += _of_part(part, inner, given, taken, known, of.span)
-        written += len(pairs)
-    if left is None:
-        length: Colset | None = replace(c, name="", low=written, high=written)
-    else:
-        others = _source(left, taken)
-        whole = None if others is None else others.whole
-        if whole is None or whole.kind is not Kind.LIST:
-            return None
-        if whole.components[0] is None or whole.components[0].resolved != element:
-            return None
-        length = _longer(replace(whole, components=c.components), written)
-    return [*asked, *_unless_known(c, value, length, known, e.span)]
+            found = _Items((), 0, 0)
+            for item in items:
+                found = found.before(_item(element, item_of(value), item, there))
+                value = others_of(value)
+            return found
+        case core.Apply(core.Builtin("List.@"), core.RecordExp(((_, front), (_, behind)))):
+            parts = [_items_of(element, x, there) for x in (front, behind)]
+            both = [x for x in parts if x is not None]
+            return both[0].before(both[1]) if len(both) == len(parts) else None
+        case core.Apply(core.Builtin("List.rev"), of):
+            return _items_of(element, of, there)
+        case core.If(condition, then, otherwise):
+            return _either_items(element, condition, then, otherwise, there)
+    if (cons := _cons(e)) is not None:
+        rest = _items(element, others_of(value), cons[1], there)
+        return None if rest is None else _item(element, item_of(value), cons[0], there).before(rest)
+    source = _source(e, there.taken)
+    whole = None if source is None else source.whole
+    if whole is None or whole.kind is not Kind.LIST:
+        return None
+    if whole.components[0] is None or whole.components[0].resolved != element:
+        return None
+    low, high = (x if isinstance(x, int) else None for x in (whole.low, whole.high))
+    return _Items((), low or 0, high)
 
 
-_ASKED = frozenset({Kind.INT, Kind.REAL, Kind.STRING})
-"""Items of lists that have bounds, and can be asked."""
+def _items_of(element: Colset, e: core.Exp, there: Where) -> _Items | None:
+    value = there.value_of(e)
+    assert isinstance(value, Scalar | Rows), "it is a list"
+    return _items(element, value, e, there)
+
+
+def _item(element: Colset, value: Value, e: core.Exp, there: Where) -> _Items:
+    """Of one item that is written out."""
+    asked: list[t.Expression] = []
+    source = _source(e, there.taken)
+    if source is None or source.resolved != element:
+        for part, inner, given in _components(element, value, e, e.span):
+            asked += _of_part(part, inner, given, there, e.span)
+    return _Items(tuple(asked), 1, 1)
+
+
+def _either_items(
+    element: Colset, condition: core.Exp, then: core.Exp, otherwise: core.Exp, there: Where
+) -> _Items | None:
+    """Of one of two lists: each is asked where it is chosen."""
+    test = there.value_of(condition)
+    assert isinstance(test, Scalar), "it is a truth value"
+    found: list[_Items] = []
+    for e, holds in ((then, True), (otherwise, False)):
+        if test.exp == (FALSE if holds else TRUE):
+            continue
+        one = _items_of(element, e, there.under(test.exp, holds))
+        if one is None:
+            return None
+        skipped = logical_not(test.exp) if holds else test.exp
+        if one.asked and skipped != FALSE:
+            asked = disjunction([skipped, conjunction(list(one.asked))])
+            one = replace(one, asked=(asked,))
+        found.append(one)
+    highs = [x.high for x in found if x.high is not None]
+    return _Items(
+        tuple(condition for x in found for condition in x.asked),
+        min(x.low for x in found),
+        max(highs) if len(highs) == len(found) else None,
+    )
 
 
 def _cons(e: core.Exp) -> tuple[core.Exp, core.Exp] | None:

@@ -68,8 +68,8 @@ class Ending:
         least, most: ns, over all runs in which each command takes its planned time and everything else none; None: not
             known, or there is no most.
         fastest, slowest: such runs, if they were wanted.
-        held_up: ns, by how much the slowest run may be faster, as in it what ends within a millisecond of each other
-            ends the other way round.
+        held_up: ns, by how much the slowest run may be faster than `most`, as in it what ends within a millisecond of
+            each other ends the other way round.
     """
 
     places: tuple[str, ...]
@@ -168,9 +168,9 @@ class Cycle:
             return "unknown", self.why or "there is no longest cycle"
         surely = max(e.most - e.held_up for e in self.endings if e.most is not None)
         if surely - TIE > limit:
-            return "no", f"a run takes {seconds_up(surely)} s"
+            return "no", f"a run takes at least {seconds_down(surely)} s"
         if self.most + TIE > limit:
-            return "unknown", f"the longest cycle is as long as that, to {near(self.most - surely)}"
+            return "unknown", f"the longest cycle takes {between(surely, self.most)}"
         return _unless(self.others)
 
     def _bounded_within(self, limit: int) -> tuple[Within, str]:
@@ -211,10 +211,16 @@ def _up(ns: int | None) -> float | None:
     return None if ns is None else -((-ns - TIE) // MS) / 1000
 
 
-def near(held_up: int) -> str:
-    """How exactly a longest time is known."""
-    ms = 1 + -(-held_up // MS)
-    return "a millisecond" if ms == 1 else f"{ms} milliseconds"
+def between(surely: int, most: int) -> str:
+    """A longest time that is not known more exactly, and why it is not.
+
+    Args:
+        surely, most: ns: some run takes no less, and none more, where durations are exact.
+    """
+    why = "durations are known to a millisecond"
+    if surely < most:
+        why = "what ends within a millisecond of each other may end in either order"
+    return f"between {seconds_down(surely)} s and {seconds_up(most)} s, as {why}"
 
 
 def seconds_down(ns: int) -> str:

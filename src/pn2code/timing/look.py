@@ -29,7 +29,7 @@ from pn2code.timing import codes
 from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
-from pn2code.timing.longest import TimedPath, longest_inside
+from pn2code.timing.longest import TimedPath, TimedPaths, longest_inside
 from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
@@ -169,7 +169,7 @@ class _Look:
             with deadline.share(_OF_CYCLES).enforced():
                 self.search.explore(HowFar(say, "measuring cycles", noun="situations"))
         except TimeIsOverError:
-            self.search.why = "time"
+            self.search.why = self.search.why or "time"
         return Layout(
             self.name,
             tuple(self._commands()),
@@ -268,8 +268,16 @@ class _Look:
                 None if worst is None else worst.ns,
                 self._run(best if is_known else None, f"fastest{short}"),
                 self._run(worst, f"slowest{short}"),
-                0 if worst is None else search.held_up(0, worst.arcs),
+                0 if worst is None else worst.ns - self._surely(worst, ending.nodes),
             )
+
+    def _surely(self, worst: TimedPath, nodes: Sequence[int]) -> int:
+        """ns: some run to these situations takes no less, whatever ends before what it is a tie with."""
+        held_up = self.search.held_up(0, worst.arcs)
+        if not held_up:
+            return worst.ns
+        found = TimedPaths(self.search.surely(), self.search.ends).longest(nodes)
+        return worst.ns - held_up if found is None else max(found.ns, worst.ns - held_up)
 
     def _others(self, late: Sequence[str]) -> Iterator[str]:
         """What runs may do that do not come to the end."""

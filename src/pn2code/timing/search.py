@@ -90,6 +90,7 @@ class Search:
         self._stopped = stops(self.graph)
         self._told: dict[int, frozenset[int]] = {}
         self._calm = self.graph.running.firing
+        self._calm_seconds: set[int] = set()
 
     def explore(self, more: Callable[[], None] = lambda: None) -> None:
         """Goes through all of them, and finds the best and the worst; `more` hears of each."""
@@ -156,12 +157,25 @@ class Search:
         """
         out = 0
         for target, mark in way:
-            going = [ns for *_, ns in self.situations[node][2] if ns < FOREVER // 2]
             arcs = [a for a in self.successors[node] if a[2] == mark and target in (a[0], -1)]
-            if going and arcs:
-                out += max(0, max(ns for _, ns, _ in arcs) - min(going))
+            out += max((self._late(node, ns) for _, ns, _ in arcs), default=0)
             node = target
         return out
+
+    def surely(self) -> list[list[Arc]]:
+        """All arcs without these times: a way takes no less than what is left of it."""
+        return [
+            [(to, ns - self._late(node, ns), mark) for to, ns, mark in arcs]
+            for node, arcs in enumerate(self.successors)
+        ]
+
+    def _late(self, node: int, ns: int) -> int:
+        """ns: by how much what should have ended first there ends later, where so much time goes by."""
+        # In whole seconds in which the clock only goes round nothing ends.
+        if node in self._calm_seconds:
+            return 0
+        going = [left for *_, left in self.situations[node][2] if left < FOREVER // 2]
+        return max(0, ns - min(going)) if going else 0
 
     def around(self) -> list[int]:
         """The elements of a repetition that takes time, from which an end can be reached."""
@@ -235,6 +249,7 @@ class Search:
         first = min(u[2] for u in going if is_waiting or u[0] != CLOCK)
         if not is_waiting and (passed := _whole_seconds(under_way, first)):
             later = tuple((o, e, ns if o == CLOCK else ns - passed) for o, e, ns in under_way)
+            self._calm_seconds.add(node)
             return [(self._number((state, stands, later)), passed, BEGINS)]
         first = min(u[2] for u in going)
         those = [u for u in going if u[2] <= first + TIE]

@@ -24,13 +24,13 @@ from pn2code.geometry.runs import write
 from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
-from pn2code.timing.answers import Cycle, Layout, near, seconds_down, seconds_up
+from pn2code.timing.answers import Cycle, Layout, between, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
 from pn2code.timing.own_work import by_own_work
 from pn2code.timing.search import TIE, Search
-from pn2code.timing.waits import Is, Wait, longest_wait
+from pn2code.timing.waits import Is, Wait, longest_wait, seen_wait
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
 from pn2code.verify.answers.properties import Answer, Evidence, Verdict
@@ -177,6 +177,9 @@ class _Judge:
             found = open_(cycle.why)
             if cycle.bounded is not None:
                 found = self._bounded(a, one, layout, (first, second), limit)
+            seen = seen_too_long(search, first, second, limit)
+            if seen is not None:
+                return self._shown(a, one, seen, "no", None)
             own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
             if own is None or found.answer == "yes":
                 return found
@@ -190,11 +193,11 @@ class _Judge:
             if wait.why in _WHY or (wait.why == "never" and faults):
                 return open_(_WHY.get(wait.why) or f"a run may stop before it: {faults[0]}")
             return self._shown(a, one, wait, "no", None)
-        held_up = search.held_up(wait.way[0][0], wait.way[1:]) if wait.way else 0
-        if wait.ns - held_up - TIE > limit:
-            return self._shown(a, one, wait, "no", wait.ns - held_up)
         if wait.ns + TIE > limit:
-            return open_(f"the longest wait is as long as that, to {near(held_up)}")
+            surely, shown = surely_waited(search, wait, first, second)
+            if surely - TIE > limit:
+                return self._shown(a, one, shown, "no", surely)
+            return open_(f"the longest wait takes {between(surely, wait.ns)}")
         stops = self.control.stops if self.control is not None else ""
         others = [stops] if stops else []
         others += layout.cycle.ends
@@ -301,6 +304,35 @@ class _Judge:
         return Answer(
             a.about, verdict, "", evidence, value=value, cell=True, assumes=(PLANNED,)
         )  # fmt: skip
+
+
+def surely_waited(search: Search, wait: Wait, first: Is, second: Is) -> tuple[int, Wait]:
+    """ns: some run waits no less, whatever ends before what it is a tie with; and the wait of this run.
+
+    Args:
+        wait: the longest one, where such ties may add up.
+    """
+    assert wait.ns is not None
+    held_up = search.held_up(wait.way[0][0], wait.way[1:]) if wait.way else 0
+    if not held_up:
+        return wait.ns, wait
+    found = longest_wait(search.surely(), first, second, ())
+    if found.ns is None or found.ns < wait.ns - held_up:
+        return wait.ns - held_up, wait
+    return found.ns, found
+
+
+def seen_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | None:
+    """Where a limit has ended the search: how some run waits for longer than `limit` (ns) in what was seen.
+
+    None: none was seen, or not only a limit is why not all is known.
+    """
+    if search.why not in ("situations", "time") or search.doings.why or search.doings.stops:
+        return None
+    over = {i for i, (state, *_) in enumerate(search.situations) if state in search.graph.over}
+    wait = seen_wait(search.surely(), first, second, over | search.ends)
+    is_longer = wait.why == "repeats" or (wait.ns is not None and wait.ns - TIE > limit)
+    return wait if is_longer else None
 
 
 def _bounds(cycle: Cycle) -> str:

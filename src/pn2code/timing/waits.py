@@ -15,6 +15,8 @@ from pn2code.base.frozen import frozen
 from pn2code.timing.longest import Arc, TimedPaths
 
 Is = Callable[[int], bool]
+_LEFT = -9
+"""The mark of an arc on which the part that was seen is left."""
 
 
 @frozen
@@ -43,6 +45,8 @@ def longest_wait(
     second: Is,
     ends: Collection[int],
     over: Collection[int] = (),
+    *,
+    may_idle: bool = False,
 ) -> Wait:
     """The longest time from an event to the next one of the other kind.
 
@@ -51,6 +55,7 @@ def longest_wait(
         first, second: whether the mark of an arc is such an event.
         ends: the nodes in which the cycle may be over.
         over: those of them from which the second event is not waited for as nobody begins it any more.
+        may_idle: what takes no time and can go on for ever is no reason against a longest one.
     """
     begun = _begun(successors, first)
     if not begun:
@@ -86,11 +91,27 @@ def longest_wait(
         return told([*there, *_round(graph, paths.cycle)], "repeats")
     found = paths.longest()
     assert found is not None
-    if paths.never_end():
+    if paths.never_end() and not may_idle:
         return Wait(None, "idle")
     if any(node in ends for node in inside):
         return Wait(None, "ends")
     return told(found.arcs, "", found.ns)
+
+
+def seen_wait(
+    successors: Sequence[Sequence[Arc]], first: Is, second: Is, over: Collection[int]
+) -> Wait:
+    """The longest time after an event without one of the other kind, in the part of a graph that was seen.
+
+    Some run waits at least so long, whatever comes behind that part; "repeats": as long as it likes.
+
+    Args:
+        over: nodes in which the cycle may be over: what comes after them does not count.
+    """
+    part = [
+        [*(() if node in over else arcs), (0, 0, _LEFT)] for node, arcs in enumerate(successors)
+    ]
+    return longest_wait(part, first, lambda m: m == _LEFT or second(m), (), may_idle=True)
 
 
 def waiting(successors: Sequence[Sequence[Arc]], first: Is, second: Is) -> tuple[int, ...]:

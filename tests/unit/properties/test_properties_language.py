@@ -114,6 +114,19 @@ def test_meaning(examined: front.Examined, text: str, expected: str) -> None:
     assert asked(examined, text) == expected
 
 
+def test_seconds_of_a_cell_are_no_whole_numbers(examined: front.Examined) -> None:
+    """Of 1.9 s the integer clock of its net counts one; what commands take is compared with 1.9 s."""
+    d = Diagnostics()
+    assert examined.flat is not None and examined.typed is not None
+    binder = Binder(examined.flat, examined.typed.elaborator, d, is_cell=True)
+    binder.add(option("every fires(Top'Sell) is followed by fires(Wait) within 1.9 seconds"))
+    assert not d.items, report(d)
+    found = binder.properties()
+    assert questions(found).splitlines() == ["? within-time f0 f1 1"]
+    (asked_,) = (p.asked for p in found.properties)
+    assert isinstance(asked_, m.Response) and (asked_.time, asked_.units) == ("1.9", "1")
+
+
 @pytest.mark.parametrize(
     ("left", "right"),
     [
@@ -247,7 +260,7 @@ WRONG = [
     ("always { }", "this condition is empty", 9),
     ("every dead is followd by initial", "`followd` cannot be used here", 15, "did you mean `followed`?"),
     ("every dead && fires(Wait) is followed by dead within 3 firings", "an event with `within`", 7),
-    ("every dead is followed by initial within 2.5 time", "counts integers", 1),
+    ("every dead is followed by initial within 2.5 time", "counts integers", 1, "`within 2 time` says the same"),
     ("every dead is followed by initial within 2.5 firings", "cannot be used here", 46),
     ("ltl G dead assuming strong Sel", "the net has no transition `Sel`", 28, "`Top'Sell`"),
     ("mutex Stock", "ends here", 12),

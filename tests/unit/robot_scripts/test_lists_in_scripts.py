@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
-from helpers.robots import Cell
+from helpers.robots import Cell, replayed
+from pn2code.tdl.requests import Fault
 
 EXTRA = """
 colset SMALL = int with 0..9;
@@ -111,8 +113,89 @@ def test_items_that_are_in_their_colour_set(tmp_path: Path) -> None:
     assert cell(tmp_path, page, ("x in DIGITS",)).ir is not None
     page = page.replace("if length digits > 1 then tl digits else rev digits", "digits ^^ others")
     found = cell(tmp_path, page, ("x in DIGITS",))
+    assert found.ir is not None, found.messages
+    asked = "if not count_of(joined(digits, others)) <= 3 then stop"
+    assert asked in " ".join(found.body.split()), found.body
+
+
+@pytest.mark.parametrize(
+    ("put", "asked"),
+    [
+        ("digits ^^ [n]", "n >= 0 and n <= 9 and count_of(joined(digits, ints(n))) <= 3"),
+        ("rev (d :: digits)", "count_of(reversed(with_first(digits, d))) <= 3"),
+        (
+            "(if a then n :: digits else digits)",
+            "(not a or n >= 0 and n <= 9) and count_of(if a then with_first(digits, n) else digits) <= 3",
+        ),
+        (
+            "(if n < 10 then digits ^^ [n] else [])",
+            "(not n < 10 or n >= 0) and count_of(if n < 10 then joined(digits, ints(n)) else ints()) <= 3",
+        ),
+        ("(if n < 10 andalso n >= 0 then [n] else [d])", ""),
+        ("(if a then tl digits else rev digits)", ""),
+    ],
+)  # fmt: skip
+def test_lists_that_are_joined_or_chosen(tmp_path: Path, put: str, asked: str) -> None:
+    """Beside another value, so that the script has the choice in the expression."""
+    page = f"""
+    place Held : BOTH = 1`([], 0)
+    place Last : SMALL = 1`0
+    trans Next
+      in x : n
+      in z : a
+      in Held : (digits, k)
+      in Last : d
+      out Held : ({put}, k + 1)
+      out Last : d
+    """
+    extra = f"{EXTRA}colset BOTH = product DIGITS * INT;\nvar x : INT;\nvar z : BOOL;\n"
+    found = Cell(tmp_path, page, ("x in INT", "z in BOOL"), extra=extra)
+    assert found.ir is not None, found.messages
+    body = " ".join(found.body.split())
+    for whole, own in (("held_1", "digits"), ("last", "d"), ("z", "a")):
+        body = re.sub(rf"\b{whole}\b", own, body)
+    if asked:
+        assert f"if not ({asked}) then stop" in body or f"if not {asked} then stop" in body, body
+    else:
+        assert "then stop" not in body, body
+
+
+@pytest.mark.parametrize("put", ["digits ^^ l", "(if a then digits else l)", "l ^^ [d]"])
+def test_lists_with_items_of_others_are_refused(tmp_path: Path, put: str) -> None:
+    page = f"""
+    place Held : DIGITS = 1`[]
+    place Last : SMALL = 1`0
+    trans Next
+      in x : l
+      in z : a
+      in Held : digits
+      both Last : d
+      out Held : rev ({put})
+    """
+    extra = f"{EXTRA}var x : NUMBERS;\nvar z : BOOL;\n"
+    found = Cell(tmp_path, page, ("x in NUMBERS", "z in BOOL"), extra=extra)
     assert found.ir is None
     assert "a script cannot ask whether a value is in it" in found.messages[0]
+    assert "`if c then item :: l else l`" in found.messages[0]
+
+
+def test_a_list_that_a_choice_makes_is_what_the_net_makes(tmp_path: Path) -> None:
+    page = """
+    place Idle = 1
+    place Scan : BOTH = 1`([], 0)
+    trans Look
+      both Idle
+      in x : n
+      in Scan : (digits, k)
+      out Scan : (if n > 4 then digits ^^ [n] else digits, k + n)
+      out y : length digits
+    """
+    extra = f"{EXTRA}colset BOTH = product DIGITS * INT;\nvar x : INT;\n"
+    found = Cell(tmp_path, page, ("x in INT", "y out INT"), extra=extra)
+    result = replayed(found, [("x", (n,)) for n in (5, 1, 7, 12)])
+    assert result.ok, result
+    assert isinstance(found.end, Fault), "12 is no digit"
+    assert found.end.message.startswith("Look: colour set BOTH of place Scan")
 
 
 @pytest.mark.parametrize(

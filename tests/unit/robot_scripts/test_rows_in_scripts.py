@@ -139,13 +139,36 @@ def test_items_that_are_written_are_asked(tmp_path: Path, put: str, asked: str) 
         assert "stop" not in body, body
 
 
+def test_items_are_joined_and_chosen_beside_other_values(tmp_path: Path) -> None:
+    """It was refused; the script asks of the item where it is taken, and how long the list becomes."""
+    page = """
+    place Idle = 1
+    place Scan : BOTH = 1`(0, [])
+    trans Look
+      both Idle
+      in x : n
+      in z : a
+      in Scan : (k, ds)
+      out Scan : (k + 1, if a then ds ^^ [{spot = n, kind = burn}] else ds)
+    """
+    extra = f"{EXTRA}colset BOTH = product INT * DEFECTS;\nvar x : INT;\nvar z : BOOL;\n"
+    found = Cell(tmp_path, page, ("x in INT", "z in BOOL"), extra=extra)
+    assert found.ir is not None, found.messages
+    body = words(found.body)
+    body = body.replace("scan_x2_spot", "ds_spot")
+    chosen = "if a then joined(ds_spot, ints(n)) else ds_spot"
+    asked = f"(not a or n >= 0 and n <= 9) and count_of({chosen}) <= 3"
+    assert f"if not ({asked}) then stop" in body, body
+    found.checked()
+
+
 def test_items_of_others_stay_unknown(tmp_path: Path) -> None:
     page = """
     place Held : DEFECTS = 1`[]
     trans Next
       in x : ps
       in Held : ds
-      out Held : if null ps then ds else rev ds ^^ ds
+      out Held : if null ps then ds else tl (rev ds ^^ ds)
     """
     found = cell(tmp_path, page, ("x in PAIRS",))
     assert found.ir is None

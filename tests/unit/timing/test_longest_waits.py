@@ -7,7 +7,7 @@ from random import Random
 import pytest
 
 from pn2code.timing.longest import Arc
-from pn2code.timing.waits import Wait, longest_wait
+from pn2code.timing.waits import Wait, longest_wait, seen_wait
 
 E, F, X = 1, 2, 0
 
@@ -39,6 +39,25 @@ def test_who_is_never_asked_waits_for_nothing() -> None:
 def test_there_is_no_longest_wait(graph: list[list[Arc]], ends: tuple[int, ...], why: str) -> None:
     found = wait(graph, frozenset(ends))
     assert (found.ns, found.why) == (None, why)
+
+
+@pytest.mark.parametrize(
+    ("graph", "over", "expected"),
+    [
+        # Node 2 was not looked at any more: so far somebody has waited for 3.
+        ([[(1, 5, E)], [(2, 3, X), (3, 1, F)], [], []], (), Wait(3)),
+        # Who waits after the end of the cycle does not count.
+        ([[(1, 5, E)], [(2, 3, X)], [(3, 9, X)], []], (2,), Wait(3)),
+        ([[(1, 5, E)], [(1, 1, X), (2, 1, F)], []], (), Wait(None, "repeats")),
+        ([[(1, 5, E)], [(1, 0, X), (2, 4, X)], []], (), Wait(4)),
+        ([[(1, 5, F)], []], (), Wait(0)),
+    ],
+)
+def test_of_a_part_it_is_known_how_long_a_run_waits_at_least(
+    graph: list[list[Arc]], over: tuple[int, ...], expected: Wait
+) -> None:
+    found = seen_wait(graph, lambda m: m == E, lambda m: m == F, over)
+    assert (found.ns, found.why) == (expected.ns, expected.why)
 
 
 def test_an_event_of_both_kinds_waits_for_the_next_one() -> None:
