@@ -31,7 +31,10 @@ class Explorer:
         return cast(Any, SimpleNamespace(error=None, answers=(self.says,), depth=10))
 
 
-def searched(says: Mapping[str, Any], limits: Limits = Limits()) -> tuple[Explorer, Any]:
+NO_LIMITS = Limits()
+
+
+def searched(says: Mapping[str, Any], limits: Limits = NO_LIMITS) -> tuple[Explorer, Any]:
     explorer = Explorer(says)
     rows = hunt(ASKED, [OPEN, FAILED], "", limits, ExploreOptions(), explorer, failing=[1])
     return explorer, rows
