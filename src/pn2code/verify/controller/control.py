@@ -295,8 +295,9 @@ def examine(
         if in_counts is None and found.why in REACHED:
             # What was seen may be too much to tell how it comes to what is wrong; a run to it need not be.
             hunted = replace(limits, deadline=limits.deadline.share(HUNT_PART))
-            nothing = {"answer": "unknown", "why": found.why, "trace": None}
-            answers = _hunted(running, plan, hunted, options, answers or [nothing] * count)
+            open_row = {"answer": "unknown", "why": found.why, "trace": None}
+            known: Sequence[Mapping[str, Any]] = answers or [open_row] * count
+            answers = _hunted(running, plan, hunted, options, known)
         options = replace(options, evidence=Path(name))
 
         def explore_with_moves(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
