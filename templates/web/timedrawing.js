@@ -169,16 +169,22 @@ function drawLane(view, c, lane, w) {
       c.fillStyle = over;
       c.fillRect(x, y + inset, width - 0.6, LANE - 2 * inset);
     }
-    const fits = Math.floor((Math.min(width, view.x(view.to) - x) - 6) / 6.2);
+    const seen = Math.max(x, view.left);
+    const fits = Math.floor((Math.min(x + width, view.x(view.to)) - seen - 6) / 6.2);
     if (fits > 2 && !lane.isFolded) {
       c.fillStyle = bar.kind === "activity" || bar.kind === "wait" ? (view.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
       const label = shorten(bar.label, fits);
-      const at = Math.max(x, view.left) + 4;
+      const at = seen + 4;
       if (over) {
+        c.save();
+        c.beginPath();
+        c.rect(x, y + inset, width - 0.6, LANE - 2 * inset);
+        c.clip();
         c.strokeStyle = KINDS[bar.kind]; // no line goes through a letter
         c.lineWidth = 4;
         c.lineJoin = "round";
         c.strokeText(label, at, y + LANE / 2);
+        c.restore();
       }
       c.fillText(label, at, y + LANE / 2);
     }
