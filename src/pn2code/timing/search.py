@@ -69,6 +69,7 @@ class Search:
         stuck: situations in which nothing more happens, though the cell is not at its end, and no fault is why.
         faults: why the cell stops at some of them.
         halts: a script may find no transition that is possible, and stop the cell.
+        halting: the situations in which it may do so now.
     """
 
     def __init__(self, doings: Doings, most: int = MOST) -> None:
@@ -80,6 +81,7 @@ class Search:
         self.stuck: list[int] = []
         self.faults: dict[str, int] = {}
         self.halts = False
+        self.halting: set[int] = set()
         self.endings: dict[tuple[str, ...], Ending] = {}
         self.cycle: list[int] = []
         self.is_endless = False
@@ -169,6 +171,16 @@ class Search:
             for node, arcs in enumerate(self.successors)
         ]
 
+    def stopped(self) -> set[int]:
+        """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, or
+        a script may find no transition."""
+        faulted = {
+            node
+            for node, (*_, under_way) in enumerate(self.situations)
+            if any(left >= FOREVER // 2 for *_, left in under_way)
+        }
+        return faulted | self.halting
+
     def _late(self, node: int, ns: int) -> int:
         """ns: by how much what should have ended first there ends later, where so much time goes by."""
         # In whole seconds in which the clock only goes round nothing ends.
@@ -209,6 +221,7 @@ class Search:
                 continue
             if target in self._stopped:
                 self.halts = True
+                self.halting.add(node)
                 continue
             owner = self.graph.elements[element].owner
             if owner in busy and kind is Kind.TOLD:

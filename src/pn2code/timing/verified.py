@@ -189,17 +189,18 @@ class _Judge:
         over = _over(search, second)
         wait = longest_wait(search.successors, first, second, over | search.ends, over)
         if wait.ns is None:
-            faults = [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
-            if wait.why in _WHY or (wait.why == "never" and faults):
-                return open_(_WHY.get(wait.why) or f"a run may stop before it: {faults[0]}")
-            return self._shown(a, one, wait, "no", None)
+            stops = _stops(search)
+            if wait.why in _WHY or (wait.why == "never" and stops):
+                return open_(_WHY.get(wait.why) or f"a run may stop before it: {stops[0]}")
+            shown = self._too_long(a, one, wait, (first, second), limit)
+            return shown or open_(f"a run may stop before it: {stops[0]}")
         if wait.ns + TIE > limit:
-            surely, shown = surely_waited(search, wait, first, second)
+            surely, its = surely_waited(search, wait, first, second)
             if surely - TIE > limit:
-                return self._shown(a, one, shown, "no", surely)
+                shown = self._too_long(a, one, replace(its, ns=surely), (first, second), limit)
+                return shown or open_(f"a run may stop before it: {_stops(search)[0]}")
             return open_(f"the longest wait takes {between(surely, wait.ns)}")
-        stops = self.control.stops if self.control is not None else ""
-        others = [stops] if stops else []
+        others = [self.control.stops] if self.control is not None and self.control.stops else []
         others += layout.cycle.ends
         if others:
             return open_(f"where it comes, it comes in time, but {others[0]}")
@@ -210,6 +211,16 @@ class _Judge:
         is_kept = slow.ns is not None and slow.ns + TIE <= limit
         clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
         return self._yes(a, wait, AT_MOST if is_kept else PLANNED, *clock)
+
+    def _too_long(
+        self, a: Answer, one: Measured, wait: Wait, events: tuple[Is, Is], limit: int
+    ) -> Answer | None:
+        """With the run of a wait that is too long; of another one, if that run stops before; None: all of them do."""
+        way = [wait.before, *(node for node, _ in wait.way[:-1])]
+        if one.search.stopped().isdisjoint(way):
+            return self._shown(a, one, wait, "no", wait.ns)
+        seen = waited_too_long(one.search, *events, limit)
+        return None if seen is None else self._shown(a, one, seen, "no", None)
 
     def _yes(self, a: Answer, wait: Wait, *assumes: str) -> Answer:
         assert wait.ns is not None
@@ -306,6 +317,11 @@ class _Judge:
         )  # fmt: skip
 
 
+def _stops(search: Search) -> list[str]:
+    """Why a run may stop."""
+    return [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
+
+
 def surely_waited(search: Search, wait: Wait, first: Is, second: Is) -> tuple[int, Wait]:
     """ns: some run waits no less, whatever ends before what it is a tie with; and the wait of this run.
 
@@ -329,8 +345,13 @@ def seen_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | N
     """
     if search.why not in ("situations", "time") or search.doings.why or search.doings.stops:
         return None
+    return waited_too_long(search, first, second, limit)
+
+
+def waited_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | None:
+    """How some run waits for longer than `limit` (ns) before it ends or is stopped; None: none does."""
     over = {i for i, (state, *_) in enumerate(search.situations) if state in search.graph.over}
-    wait = seen_wait(search.surely(), first, second, over | search.ends)
+    wait = seen_wait(search.surely(), first, second, over | search.ends | search.stopped())
     is_longer = wait.why == "repeats" or (wait.ns is not None and wait.ns - TIE > limit)
     return wait if is_longer else None
 

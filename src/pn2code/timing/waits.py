@@ -108,9 +108,9 @@ def seen_wait(
     Args:
         over: nodes in which the cycle may be over: what comes after them does not count.
     """
-    part = [
-        [*(() if node in over else arcs), (0, 0, _LEFT)] for node, arcs in enumerate(successors)
-    ]
+    left = [() if node in over else arcs for node, arcs in enumerate(successors)]
+    reached = set(_until(left, {0}, lambda _: False))
+    part = [[*(arcs if node in reached else ()), (0, 0, _LEFT)] for node, arcs in enumerate(left)]
     return longest_wait(part, first, lambda m: m == _LEFT or second(m), (), may_idle=True)
 
 

@@ -48,6 +48,7 @@ def test_there_is_no_longest_wait(graph: list[list[Arc]], ends: tuple[int, ...],
         ([[(1, 5, E)], [(2, 3, X), (3, 1, F)], [], []], (), Wait(3)),
         # Who waits after the end of the cycle does not count.
         ([[(1, 5, E)], [(2, 3, X)], [(3, 9, X)], []], (2,), Wait(3)),
+        ([[(1, 5, X)], [(2, 0, X)], [(3, 1, E)], [(4, 9, X)], []], (1,), Wait(0)),
         ([[(1, 5, E)], [(1, 1, X), (2, 1, F)], []], (), Wait(None, "repeats")),
         ([[(1, 5, E)], [(1, 0, X), (2, 4, X)], []], (), Wait(4)),
         ([[(1, 5, F)], []], (), Wait(0)),

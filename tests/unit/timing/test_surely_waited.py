@@ -9,10 +9,10 @@ from typing import Any, cast
 
 from pn2code.cell.partition import OwnerKind
 from pn2code.timing.answers import Cycle, Ending, between
-from pn2code.timing.doings import NS, Doing, Doings
+from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc
 from pn2code.timing.search import MOST, TIE, Search
-from pn2code.timing.verified import seen_too_long, surely_waited
+from pn2code.timing.verified import _Judge, seen_too_long, surely_waited, waited_too_long
 from pn2code.timing.waits import longest_wait
 
 MS = NS // 1000
@@ -113,3 +113,69 @@ def test_a_bound_is_rounded_outwards() -> None:
     cycle = Cycle((Ending(("Done",), NS, 4 * NS),), "", (), NS, 9 * NS, (), 100)
     assert cycle.within(3.9) == ("no", "a run takes at least 3.999 s")
     assert cycle.within(4.0)[1].startswith("the longest cycle takes between 3.999 s and 4.001 s")
+
+
+def stopping_cell(first_ns: int = FOREVER, *, halts: bool = False) -> Search:
+    """Two devices are asked: the first one's command cannot be done, or its script stops; the other's takes 3 s."""
+    owners = [
+        SimpleNamespace(index=0, kind=OwnerKind.SUPERVISOR),
+        SimpleNamespace(index=1, kind=OwnerKind.DEVICE),
+        SimpleNamespace(index=2, kind=OwnerKind.DEVICE),
+    ]
+    first, other, over = 1, 3, 2
+    works = [] if halts else [[(first, 5)], [(first, 6)]]
+    graph = SimpleNamespace(
+        why="",
+        partition=SimpleNamespace(
+            net=SimpleNamespace(timed=False, places=[]), owners=owners, final_places=()
+        ),
+        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED),
+        elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (0, 1, 0, 2)],
+        arcs=[
+            [(ASK, 1)],
+            [(other, 2), *((first, 5) for _ in works[:1]), *((first, 4) for _ in range(halts))],
+            [(over, 3), *((first, 6) for _ in works[:1])],
+            [],
+            [],
+            [(other, 6)],
+            [(over, 3)],
+        ],
+        marked=[{}, {}, {}, {}, {STOPPED: 1}, {}, {}],
+        over=set(),
+    )
+    fault = "it is out of reach" if first_ns >= FOREVER else ""
+    made = {first: Doing(first_ns, None, (), fault), other: Doing(3 * NS, None, ())}
+    if halts:
+        del made[first]
+    doings: Any = SimpleNamespace(
+        graph=graph,
+        why="",
+        stops=False,
+        homes=(),
+        arm_of={},
+        of=lambda element, _: made.get(element),
+        waits=lambda _: 0,
+    )
+    search = Search(cast(Doings, doings))
+    search.explore()
+    return search
+
+
+def test_what_others_do_after_a_fault_is_no_run() -> None:
+    """It was shown as a run that waits for 3 s, though the cell stops as soon as it has asked."""
+    events = (lambda mark: mark == ASK), (lambda mark: mark == END)
+    shown: Any = SimpleNamespace(_shown=lambda *_: "shown")
+    for search, is_real in (
+        (stopping_cell(), False),
+        (stopping_cell(halts=True), False),
+        (stopping_cell(2 * NS), True),
+    ):
+        wait = longest_wait(search.successors, *events, ())
+        assert wait.ns == 3 * NS
+        assert bool(search.stopped()) == (not is_real)
+        assert (waited_too_long(search, *events, 2 * NS) is not None) == is_real
+        one: Any = SimpleNamespace(search=search)
+        told: Any = _Judge._too_long(shown, cast(Any, None), one, wait, events, 2 * NS)
+        assert (told == "shown") == is_real
+        search.why = "situations"
+        assert (seen_too_long(search, *events, 2 * NS) is not None) == is_real
