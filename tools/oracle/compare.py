@@ -101,7 +101,9 @@ SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
 ENTERING = "Exception raised entering state space tool"
 SUBTRACT = re.compile(
     r"[Ee]xception Subtract (?:raised while executing .*\((\w+)\)|is raised .* transition (\w+) occured)"
+    r"|Internal Error occured while transition (\w+) occured! Internal Error: rm "
 )
+"""It takes a token that is not there: from untimed places, then from timed ones."""
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
@@ -110,6 +112,11 @@ DECLARES = re.compile(r"InternalError: Illegal \S+Dec")
 """Where an inscription declares something other than a value."""
 REPEATS = "InternalError: fun get_vids"
 """Where one side of a guard equation has a variable twice."""
+
+
+def _transition(found: re.Match[str]) -> str:
+    """The id of the transition that took too much, or its name."""
+    return next(name for name in found.groups() if name)
 
 
 def differs(note: str) -> Verdict:
@@ -190,7 +197,7 @@ class Seen:
         """Whether the engine ends in a transition with several arcs from what is one place here."""
         found = SUBTRACT.search(message)
         assert self.net is not None
-        return found is not None and any(self._twice(found.group(1) or "").values())
+        return found is not None and any(self._twice(_transition(found)).values())
 
     def _has_twice(self, message: str) -> bool:
         """Whether the engine ends in a transition with a pattern in which a variable is twice."""
@@ -199,7 +206,7 @@ class Seen:
         return found is not None and any(
             len(names) > len(set(names))
             for t in self.net.transitions
-            if t.id == found.group(1) or t.short == found.group(2)
+            if _transition(found) in (t.id, t.short)
             for a in t.arcs
             for term in (a.inscription.terms if a.inscription is not None else ())
             if term.pattern is not None
@@ -208,7 +215,8 @@ class Seen:
 
     def _twice(self, transition: str) -> dict[int, bool]:
         """The places that a transition takes from: whether over several arcs."""
-        found = [t for t in self.net.transitions if t.id == transition] if self.net else []
+        all_of_them = self.net.transitions if self.net else ()
+        found = [t for t in all_of_them if transition in (t.id, t.short)]
         taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
         return {place: n > 1 for place, n in taking.items()}
 

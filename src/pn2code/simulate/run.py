@@ -97,8 +97,9 @@ class Failure:
         transition: FlatTransition | None = None,
         binding: Mapping[str, str] | None = None,
     ) -> Failure:
-        """From what the token game raises."""
-        return Failure(error.message, error.origin, error.span, transition, binding)
+        """From what the token game raises; it knows itself whose bindings it has searched for."""
+        t = transition or error.transition
+        return Failure(error.message, error.origin, error.span, t, binding)
 
     def report(self, d: Diagnostics, steps: int) -> None:
         """As a diagnostic."""

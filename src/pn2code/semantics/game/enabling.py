@@ -32,7 +32,7 @@ from pn2code.net.no_match import no_match_places
 from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
 from pn2code.semantics.evaluation.random import bindings_of
-from pn2code.semantics.game.errors import NoMatchError, one_line, running
+from pn2code.semantics.game.errors import GameError, NoMatchError, one_line, running
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,
@@ -395,9 +395,13 @@ class Enabling:
         """
         if self._inhibitors(t, marking):
             return
-        for binding in self.bindings(t, marking, accept=accept, wanting=True):
-            if self._is_held(t, marking, binding):
-                yield binding
+        try:
+            for binding in self.bindings(t, marking, accept=accept, wanting=True):
+                if self._is_held(t, marking, binding):
+                    yield binding
+        except GameError as error:
+            error.transition = t
+            raise
 
     def _inhibitors(self, t: FlatTransition, marking: Marking) -> list[FlatArc]:
         """The inhibitor arcs whose place has an available token."""
@@ -492,8 +496,12 @@ class Enabling:
             if not isinstance(tokens, TimedMultiSet):
                 continue
             for term in arc.inscription.terms:
-                for early in self._possible_delays(t, arc, term, marking):
-                    later.update(token.stamp - early for token in tokens)
+                try:
+                    for early in self._possible_delays(t, arc, term, marking):
+                        later.update(token.stamp - early for token in tokens)
+                except GameError as error:
+                    error.transition = t
+                    raise
         return {time for time in later if time > marking.time}
 
     def _possible_delays(

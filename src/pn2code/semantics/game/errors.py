@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
+from pn2code.net.flat import FlatTransition
 from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 
@@ -27,6 +28,8 @@ class GameError(Exception):
         self.span = span
         self.is_unavailable = False
         """Whether it applied what is in CPN Tools, but not here."""
+        self.transition: FlatTransition | None = None
+        """Whose bindings were searched for: the element alone does not tell the instance of its page."""
 
     def __str__(self) -> str:
         """The message with its place."""
