@@ -31,13 +31,12 @@ from pn2code.ml.typing.inference import (
     Meta,
     Quant,
     Ty,
-    Unifier,
-    UnifyError,
     from_type,
     parts,
     prune,
     to_type,
 )
+from pn2code.ml.typing.unifier import Unifier, UnifyError
 
 BY_SOCKETS = "`simulate --sockets`"
 """Stands in what is said of a function that a run with connections to other programs has."""

@@ -27,8 +27,9 @@ from pn2code.ml.typing.environment import (
     TypeEntry,
     library_value,
 )
-from pn2code.ml.typing.inference import I_EXN, I_UNIT, IFun, Meta, Quant, Ty, UnifyError, to_type
+from pn2code.ml.typing.inference import I_EXN, I_UNIT, IFun, Meta, Quant, Ty, to_type
 from pn2code.ml.typing.names import Names
+from pn2code.ml.typing.unifier import UnifyError
 
 if TYPE_CHECKING:
     from pn2code.ml.typing.modules import Modules
