@@ -277,7 +277,7 @@ class _Writer:
                 raise _NotSymmetricError(f"`{own.name}` is none of {_FINITE}")
 
     def parts(self, c: Colset, value: Any) -> Iterable[tuple[Colset, Any]]:
-        from pn2code.semantics.values.colours import parts_of
+        from pn2code.semantics.values.colour_components import parts_of
 
         return [(part, item) for _, part, item in parts_of(c, value)]
 
