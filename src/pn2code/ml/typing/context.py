@@ -492,10 +492,3 @@ def suggestion(name: str, *known: Iterable[str]) -> str:
 def _name(t: Ty) -> str:
     t = prune(t)
     return t.name if isinstance(t, ICon) else ""
-
-
-def quoted(name: str) -> str:
-    """A name in back-ticks, unless it has one itself."""
-    if name == "`":
-        return "the backquote"
-    return f'"{name}"' if "`" in name else f"`{name}`"

@@ -73,3 +73,10 @@ class Shower:
 def _is_closed(t: Ty) -> bool:
     t = prune(t)
     return not isinstance(t, Meta | Quant | IError) and all(map(_is_closed, parts(t)))
+
+
+def quoted(name: str) -> str:
+    """A name in back-ticks, unless it has one itself."""
+    if name == "`":
+        return "the backquote"
+    return f'"{name}"' if "`" in name else f"`{name}`"
