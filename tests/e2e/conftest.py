@@ -20,7 +20,7 @@ from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
 from pn2code.toolchain import build
-from pn2code.verify.exploring import explore
+from pn2code.verify.exploring import explorer_process
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -39,7 +39,8 @@ def large_explorations(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Non
     folder = common(tmp_path_factory) / "explorations"
     folder.mkdir(exist_ok=True)
     with pytest.MonkeyPatch.context() as changed:
-        changed.setattr(explore, "_run", explorations.Cached(explore._run, folder))
+        run = explorations.Cached(explorer_process._run, folder)
+        changed.setattr(explorer_process, "_run", run)
         yield
 
 

@@ -16,7 +16,8 @@ from helpers.processes import pn2code
 from helpers.questions import Asked, ask
 from pn2code.net.flat import FlatNet
 from pn2code.verify.exploring.programs import Sizes
-from pn2code.verify.exploring.result import Exploration, row
+from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result_rows import row
 from pn2code.verify.report.text import report
 from pn2code.verify.report.webpage import webpage
 

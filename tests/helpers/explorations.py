@@ -35,7 +35,7 @@ OUTSIDE = ("--max-seconds", "--late-seconds", "--spill", "--write-graph", "--app
 
 
 class Cached:
-    """`explore._run`, which starts no process for a large exploration that has been done before.
+    """`explorer_process._run`, which starts no process for a large exploration that has been done before.
 
     Args:
         run: what is remembered.

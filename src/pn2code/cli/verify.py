@@ -67,7 +67,8 @@ from pn2code.verify.exploring.limits import (
     Reduction,
     cores,
 )
-from pn2code.verify.exploring.result import Exploration, Seen, written
+from pn2code.verify.exploring.result import Exploration, Seen
+from pn2code.verify.exploring.result_rows import written
 from pn2code.verify.report import writing
 from pn2code.verify.report.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.report.progress import ProgressLine

@@ -14,10 +14,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pn2code.base.frozen import frozen
 from pn2code.convert import pnml
 from pn2code.convert.codes import UNSUPPORTED_IN_PNML
 from pn2code.convert.pnml import element
+from pn2code.convert.symmetric_elements import (
+    SymmetricSort,
+    nested,
+    number_of,
+    structure,
+    subterm,
+    sum_of,
+    user_sort,
+)
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import (
@@ -75,14 +83,6 @@ def _hint(net: FlatNet) -> str:
     return "`--unfold` writes a place/transition net, if finitely many colours can come into the places"
 
 
-@frozen
-class _Sort:
-    """A colour set as a sort: its id; `colset` is looked through to what it is."""
-
-    id: str
-    colset: Colset
-
-
 def emit(
     net: FlatNet, d: Diagnostics, *, title: str, positions: Positions | None = None
 ) -> str | None:
@@ -108,7 +108,7 @@ class _Writer:
         self.positions = positions
         self.sorts: dict[str, str] = {}
         self.minus = frozenset(_minus(net.program))
-        self.names: dict[str, _Sort] = {}
+        self.names: dict[str, SymmetricSort] = {}
         self.symbols: dict[Symbol, str] = {}
         self.declared: list[str] = []
 
@@ -153,7 +153,7 @@ class _Writer:
     def inside(self, arc: FlatArc) -> Origin:
         return arc.inscription.origin if arc.inscription else arc.origin
 
-    def place(self, index: int, name: str, sort: _Sort, start: Marking) -> str:
+    def place(self, index: int, name: str, sort: SymmetricSort, start: Marking) -> str:
         p = self.net.places[index]
         if p.colset.timed:
             raise _NotSymmetricError("it is timed")
@@ -161,8 +161,8 @@ class _Writer:
         assert isinstance(tokens, MultiSet)
         marking = ""
         if tokens.counts:
-            marking = _structure("hlinitialMarking", self.multiset(p.colset, tokens))
-        kind = _structure("type", _usersort(sort))
+            marking = structure("hlinitialMarking", self.multiset(p.colset, tokens))
+        kind = structure("type", user_sort(sort))
         at = pnml.at(self.positions.get(p.id))
         return element("place", pnml.name(name), at, kind, marking, id=f"p{index}")
 
@@ -171,8 +171,8 @@ class _Writer:
         values = self.colours.sorted(c, tokens.counts)
         counts = {tokens.coefficient(v) for v in values}
         if len(counts) == 1 and len(values) > 2 and len(values) == self.size(c):
-            return _numberof(counts.pop(), element("all", _usersort(self.sort(c))))
-        return _sum([_numberof(tokens.coefficient(v), self.constant(c, v)) for v in values])
+            return number_of(counts.pop(), element("all", user_sort(self.sort(c))))
+        return sum_of([number_of(tokens.coefficient(v), self.constant(c, v)) for v in values])
 
     def transition(self, t: FlatTransition, name: str, lowest: int) -> str:
         what = f"transition `{t.name}`"
@@ -188,7 +188,7 @@ class _Writer:
                 conditions.append(self.condition(guard))
             except _NotSymmetricError as problem:
                 self.refuse(f"the guard of `{t.name}`", problem.why, guard.span.origin)
-        condition = _structure("condition", _nested("and", conditions)) if conditions else ""
+        condition = structure("condition", nested("and", conditions)) if conditions else ""
         at = pnml.at(self.positions.get(t.id))
         return element("transition", pnml.name(name), at, condition, id=f"t{t.index}")
 
@@ -203,10 +203,10 @@ class _Writer:
         value, form = arc.inscription.value, arc.inscription.form
         if form in (Form.TIMED_TOKEN, Form.TIMED_MULTISET):
             raise _NotSymmetricError("it has time")
-        term = _numberof(1, self.value(value, c)) if form is Form.TOKEN else self.sum(value, c)
+        term = number_of(1, self.value(value, c)) if form is Form.TOKEN else self.sum(value, c)
         if not term:
             return
-        label = _structure("hlinscription", term)
+        label = structure("hlinscription", term)
         if arc.kind in (ArcKind.INPUT, ArcKind.BOTH):
             yield element("arc", label, source=there, target=here)
         if arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH):
@@ -214,7 +214,7 @@ class _Writer:
 
     # --- sorts -----------------------------------------------------------------------------------
 
-    def sort(self, c: Colset) -> _Sort:
+    def sort(self, c: Colset) -> SymmetricSort:
         """The sort of a colour set, declared when it is first met."""
         if c.name in self.names:
             return self.names[c.name]
@@ -226,7 +226,7 @@ class _Writer:
         inside = self.definition(own, identity)
         self.sorts[c.name] = identity
         self.declared.append(element("namedsort", inside, id=identity, name=own.name))
-        self.names[c.name] = _Sort(identity, own)
+        self.names[c.name] = SymmetricSort(identity, own)
         return self.names[c.name]
 
     def definition(self, c: Colset, identity: str) -> str:
@@ -245,7 +245,7 @@ class _Writer:
                 return element("finiteintrange", start=c.low, end=c.high)
             case Kind.PRODUCT | Kind.RECORD:
                 parts = [self.sort(p) for p in c.components if p is not None]
-                return element("productsort", *map(_usersort, parts))
+                return element("productsort", *map(user_sort, parts))
             case _:
                 raise _NotSymmetricError(f"`{c.name}` is none of {_FINITE}")
 
@@ -272,12 +272,12 @@ class _Writer:
             case Kind.PRODUCT | Kind.RECORD:
                 self.sort(c)
                 parts = self.parts(own, value)
-                return _nested("tuple", [self.constant(p, v) for p, v in parts], always=True)
+                return nested("tuple", [self.constant(p, v) for p, v in parts], always=True)
             case _:
                 raise _NotSymmetricError(f"`{own.name}` is none of {_FINITE}")
 
     def parts(self, c: Colset, value: Any) -> Iterable[tuple[Colset, Any]]:
-        from pn2code.semantics.values.colours import parts_of
+        from pn2code.semantics.values.colour_components import parts_of
 
         return [(part, item) for _, part, item in parts_of(c, value)]
 
@@ -303,25 +303,25 @@ class _Writer:
             case Sequence((only,)):
                 return self.sum(only, c)
             case Apply(Builtin("Ms.++"), RecordExp((("1", a), ("2", b)))):
-                return _sum([self.sum(a, c), self.sum(b, c)])
+                return sum_of([self.sum(a, c), self.sum(b, c)])
             case Apply(Builtin("Ms.--"), RecordExp((("1", a), ("2", b)))):
                 return self.difference(a, b, c)
             case Apply(Var(symbol), RecordExp((("1", a), ("2", b)))) if symbol in self.minus:
                 return self.difference(a, b, c)
             case Apply(Builtin("Ms.`"), RecordExp((("1", n), ("2", v)))):
-                return _numberof(self.count(n), self.value(v, c))
+                return number_of(self.count(n), self.value(v, c))
             case Apply(Builtin("Ms.**"), RecordExp((("1", n), ("2", m)))):
                 times, inner = self.count(n), self.sum(m, c)
-                return _numberof(times, inner) if inner else ""
+                return number_of(times, inner) if inner else ""
             case ListExp(items) if items:
-                return _sum([_numberof(1, self.value(x, c)) for x in items])
+                return sum_of([number_of(1, self.value(x, c)) for x in items])
         raise _NotSymmetricError(f"`{_shown(e)}` is no sum of values")
 
     def difference(self, a: Exp, b: Exp, c: Colset) -> str:
         first, second = self.sum(a, c), self.sum(b, c)
         if second and not first:
             raise _NotSymmetricError(f"`{_shown(b)}` is taken from nothing")
-        return _nested("subtract", [first, second]) if second else first
+        return nested("subtract", [first, second]) if second else first
 
     def count(self, e: Exp) -> int:
         n = self.known(e)
@@ -351,7 +351,7 @@ class _Writer:
                 labels = own.labels or tuple(str(i + 1) for i in range(len(own.components)))
                 pairs = zip(labels, own.components, strict=True)
                 self.sort(c)
-                return _nested(
+                return nested(
                     "tuple",
                     [self.value(by_label[k], p) for k, p in pairs if p is not None],
                     always=True,
@@ -363,7 +363,7 @@ class _Writer:
             assert symbol.colset is not None
             identity = f"V{len(self.symbols)}-{symbol.name}"
             declaration = element(
-                "variabledecl", _usersort(self.sort(symbol.colset)), id=identity, name=symbol.name
+                "variabledecl", user_sort(self.sort(symbol.colset)), id=identity, name=symbol.name
             )
             self.symbols[symbol] = identity
             self.declared.append(declaration)
@@ -398,7 +398,7 @@ class _Writer:
                         if turned == images:
                             term = self.variable(used[0])
                             for _ in range(k):
-                                term = element(tag, _subterm(term))
+                                term = element(tag, subterm(term))
                             return term
         raise _NotSymmetricError(
             f"`{_shown(e)}` is no variable, constant or tuple, nor a successor or predecessor in `{c.name}`"
@@ -415,27 +415,27 @@ class _Writer:
     def condition(self, e: Exp) -> str:
         fixed = self.known(e)
         if isinstance(fixed, bool):
-            zero = _nested("equality", [element("dotconstant")] * 2)
-            return zero if fixed else element("not", _subterm(zero))
+            zero = nested("equality", [element("dotconstant")] * 2)
+            return zero if fixed else element("not", subterm(zero))
         match e:
             case Sequence((only,)):
                 return self.condition(only)
             case If(test, then, Con(constructor)) if constructor == FALSE:
-                return _nested("and", [self.condition(test), self.condition(then)])
+                return nested("and", [self.condition(test), self.condition(then)])
             case If(test, Con(constructor), otherwise) if constructor == TRUE:
-                return _nested("or", [self.condition(test), self.condition(otherwise)])
+                return nested("or", [self.condition(test), self.condition(otherwise)])
             case If(test, then, otherwise):
                 yes = self.condition(test)
-                no = element("not", _subterm(yes))
-                first = _nested("and", [yes, self.condition(then)])
-                return _nested("or", [first, _nested("and", [no, self.condition(otherwise)])])
+                no = element("not", subterm(yes))
+                first = nested("and", [yes, self.condition(then)])
+                return nested("or", [first, nested("and", [no, self.condition(otherwise)])])
             case Apply(Builtin(name), argument) if name == "Bool.not":
-                return element("not", _subterm(self.condition(argument)))
+                return element("not", subterm(self.condition(argument)))
             case Apply(Builtin(name), RecordExp((("1", a), ("2", b)))) if name in _COMPARED:
                 return self.comparison(name, a, b)
             case Var(symbol) if symbol.colset is not None:
                 c = symbol.colset
-                return _nested("equality", [self.variable(symbol), self.constant(c, True)])
+                return nested("equality", [self.variable(symbol), self.constant(c, True)])
         raise _NotSymmetricError(f"`{_shown(e)}` compares no values")
 
     def comparison(self, name: str, a: Exp, b: Exp) -> str:
@@ -445,7 +445,7 @@ class _Writer:
             raise _NotSymmetricError(
                 f"`{_shown(a)}` and `{_shown(b)}` are compared, of which none tells the colour set"
             )
-        return _nested(_COMPARED[name], [self.value(a, c), self.value(b, c)])
+        return nested(_COMPARED[name], [self.value(a, c), self.value(b, c)])
 
     def colset_of(self, e: Exp) -> Colset | None:
         """The colour set of an expression: that of its only variable's sort, or of a tuple of such."""
@@ -488,32 +488,3 @@ def _ordinals(a: Exp, b: Exp) -> tuple[Exp, Exp, bool | None]:
 def _shown(e: Exp) -> str:
     text = " ".join(e.span.text.split())
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _subterm(term: str) -> str:
-    return element("subterm", term)
-
-
-def _nested(tag: str, terms: list[str], *, always: bool = False) -> str:
-    """An operator of the terms; of one alone, the term itself."""
-    if len(terms) == 1 and not always:
-        return terms[0]
-    return element(tag, *map(_subterm, terms))
-
-
-def _sum(terms: list[str]) -> str:
-    some = [t for t in terms if t]
-    return _nested("add", some) if some else ""
-
-
-def _numberof(n: int, term: str) -> str:
-    count = element("numberconstant", element("positive"), value=n)
-    return element("numberof", _subterm(count), _subterm(term))
-
-
-def _structure(tag: str, term: str) -> str:
-    return element(tag, element("structure", term))
-
-
-def _usersort(sort: _Sort) -> str:
-    return element("usersort", declaration=sort.id)

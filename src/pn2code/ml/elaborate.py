@@ -47,6 +47,7 @@ from pn2code.ml.parsing.parser import (
 from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.border import at_border
+from pn2code.ml.typing.code_segments import CodeSegments, TypedCode
 from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.declarations import Declarations
@@ -64,7 +65,7 @@ from pn2code.ml.typing.environment import (
 )
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.given_values import GivenValues
-from pn2code.ml.typing.inscriptions import Inscriptions, TypedCode
+from pn2code.ml.typing.inscriptions import Inscriptions
 from pn2code.ml.typing.instance_functions import InstanceFunctions
 from pn2code.ml.typing.names import Names
 from pn2code.ml.typing.patterns import Patterns
@@ -150,6 +151,7 @@ class Elaborator:
             self._variables.scope,
             partial(weakly(self._fold), fixed=True),
         )
+        self._code_segments = CodeSegments(self._ctx, self._expressions, self._variables.scope)
         self._repeats = Repeats()
         self._library: set[str] = set()
         self._from_library: set[str] = set()
@@ -483,7 +485,7 @@ class Elaborator:
 
     def code_segment(self, text: SourceText) -> TypedCode | None:
         """`input (..); output (..); action exp;`."""
-        return self._border(text, lambda: self._inscriptions.code_segment(text, self._fixities))
+        return self._border(text, lambda: self._code_segments.code_segment(text, self._fixities))
 
     def delay(self, text: SourceText, real_time: bool = False) -> core.Exp | None:
         """`@+ e` (int; the type is int) or `@++ t` (the type is IntInf.int or real): the delay expression."""

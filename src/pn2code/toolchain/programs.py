@@ -15,11 +15,9 @@ from __future__ import annotations
 
 import atexit
 import errno
-import hashlib
 import os
 import shlex
 import shutil
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -31,8 +29,7 @@ from pathlib import Path
 
 from pn2code.base.frozen import frozen, replace
 from pn2code.base.os_reason import os_reason
-from pn2code.base.private_folder import private_folder, without_folder, write_whole
-from pn2code.base.sha256 import sha256_of
+from pn2code.base.private_folder import private_folder, without_folder
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import c_flags, runtime
@@ -45,7 +42,16 @@ from pn2code.toolchain.build import (
     find_compiler,
     report_failure,
 )
-from pn2code.toolchain.orphans import tools_of_ours
+from pn2code.toolchain.kept_files import (
+    digest,
+    digest_of_runtime,
+    is_sound,
+    keep,
+    note_use,
+    put,
+    sum_of,
+)
+from pn2code.toolchain.tool_runs import LOOK_S, BuildInterruptedError, never, run_tool
 
 CACHE_UNUSABLE = register(
     "program-cache",
@@ -63,7 +69,6 @@ STALE_S = 6 * 3600.0
 """After that a folder in which something is built belongs to a process that was killed."""
 _BUILDS = "build-"
 _RUNTIME = "runtime/src"
-_LOOK_S = 0.1
 
 
 @frozen
@@ -144,18 +149,10 @@ def _version(command: tuple[str, ...], _path: str) -> str:
     Raises:
         OSError: it says nothing; the next time it is asked again.
     """
-    said = _run([*command, "--version"])
+    said = run_tool([*command, "--version"])
     if said is None or said.returncode != 0:
         raise OSError(errno.ENOEXEC, "no compiler")
     return said.stdout
-
-
-class _InterruptedError(Exception):
-    """It was wished that the build ends."""
-
-
-def _never() -> bool:
-    return False
 
 
 @contextmanager
@@ -164,7 +161,7 @@ def program(
     files: Sequence[OutputFile],
     d: Diagnostics,
     *,
-    interrupted: Callable[[], bool] = _never,
+    interrupted: Callable[[], bool] = never,
 ) -> Iterator[Path | None]:
     """A host with a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
@@ -182,7 +179,7 @@ def program(
     if kept is not None:
         try:
             found = _Builder(kept / "programs", host, compiler, files, interrupted).kept(d)
-        except _InterruptedError:
+        except BuildInterruptedError:
             yield None
             return
         if found is not None or d.has_errors:
@@ -196,7 +193,7 @@ def program(
         found = builder.program if builder.is_there() else builder.built(d)
     except OSError as problem:
         _no_room(host, problem, d)
-    except _InterruptedError:
+    except BuildInterruptedError:
         pass
     yield found
 
@@ -225,7 +222,7 @@ def is_kept(host: Host, files: Sequence[OutputFile]) -> bool:
     kept, compiler = private_folder(), Compiler.find(host, Diagnostics())
     if kept is None or compiler is None:
         return False
-    return _Builder(kept / "programs", host, compiler, files, _never).is_there()
+    return _Builder(kept / "programs", host, compiler, files, never).is_there()
 
 
 def _not_kept(why: str, origin: Origin, d: Diagnostics) -> None:
@@ -268,24 +265,24 @@ class _Builder:
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         tools += ["own", *host.own] if host.own else []
-        tools += ["runtime", _digest_of(self.runtime)]
-        self.library = folder / f"{host.name}-runtime-{_digest(tools)}.a"
+        tools += ["runtime", digest_of_runtime(self.runtime)]
+        self.library = folder / f"{host.name}-runtime-{digest(tools)}.a"
         generated = "".join(f.text for f in self.files)
         self.is_large = c_flags.is_large(generated)
         self.net_flags = net_flags(host, compiler, generated)
         tools += ["net", *self.net_flags] if self.net_flags else []
-        self.program = folder / f"{host.name}-{_digest(tools, self.files)}"
+        self.program = folder / f"{host.name}-{digest(tools, self.files)}"
 
     def is_there(self) -> bool:
         """Whether the program has been built."""
-        return os.access(self.program, os.X_OK) and _is_sound(self.program)
+        return os.access(self.program, os.X_OK) and is_sound(self.program)
 
     def kept(self, d: Diagnostics) -> Path | None:
         """The program from the cache, or built into it; None without room there, or after a diagnostic."""
         try:
             self.folder.mkdir(mode=0o700, exist_ok=True)
             if self.is_there():
-                _use(self.program)
+                note_use(self.program)
                 return self.program
             found = self.built(d)
             if found is not None:
@@ -304,14 +301,14 @@ class _Builder:
         with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
             # Sources of the runtime are a library already, mostly: they are written where they are compiled.
-            _put(room, [f for f in self.runtime if not self._is_of_library(f)])
-            _put(room, self.files)
+            put(room, [f for f in self.runtime if not self._is_of_library(f)])
+            put(room, self.files)
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
                 try:
                     net = self._net(room, d)
                     # A signal that comes just before a thread waits without an end is heard only after that.
-                    while wait([library], _LOOK_S).not_done:
+                    while wait([library], LOOK_S).not_done:
                         pass
                     if not library.result() or not net:
                         return None
@@ -324,14 +321,14 @@ class _Builder:
             done = self._compiler(room, "-o", made.name, *parts, d=d)
             if not done:
                 return None
-            _keep(made, self.program)
+            keep(made, self.program)
         return self.program
 
     def _library(self, room: Path, d: Diagnostics) -> bool:
         """The runtime with the host's own parts."""
-        if _is_sound(self.library):
+        if is_sound(self.library):
             with suppress(OSError):
-                _use(self.library)
+                note_use(self.library)
             return True
         # A build that is given up leaves what it has compiled to the next one, which gets further.
         done_before = self.folder / f"{_BUILDS}{self.library.stem}"
@@ -348,7 +345,7 @@ class _Builder:
     def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
         """The library, of objects that were there before and of others."""
         compiled_here = [f for f in self.runtime if f.path.endswith(".c")]
-        _put(room, [f for f in self.runtime if self._is_of_library(f)])
+        put(room, [f for f in self.runtime if self._is_of_library(f)])
         sources = [f.path for f in compiled_here]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
@@ -372,7 +369,7 @@ class _Builder:
                 return False
         made = room / "runtime.a"
         archiver = find_archiver() or ("ar",)
-        done = _run([*archiver, "rcs", made.name, *objects], room, self.interrupted)
+        done = run_tool([*archiver, "rcs", made.name, *objects], room, self.interrupted)
         if done is None or done.returncode != 0:
             said = "`ar` is not installed" if done is None else done.stderr.strip()
             d.error(
@@ -381,7 +378,7 @@ class _Builder:
                 Origin(self.host.name),
             )
             return False
-        _keep(made, self.library)
+        keep(made, self.library)
         return True
 
     def interrupted(self) -> bool:
@@ -425,7 +422,7 @@ class _Builder:
         return [f for f in self.files if f.path.endswith(".c")]
 
     def _compiler(self, room: Path, *arguments: str, d: Diagnostics) -> bool:
-        done = _run([*self.compiler.command, *self.flags, *arguments], room, self.interrupted)
+        done = run_tool([*self.compiler.command, *self.flags, *arguments], room, self.interrupted)
         if done is not None and done.returncode == 0:
             return True
         said = done.stderr if done is not None else "the compiler cannot be started"
@@ -445,105 +442,10 @@ class _Builder:
             with suppress(OSError):
                 used.append((path.stat().st_mtime, path))
         for _, path in sorted(used, reverse=True)[MOST_PROGRAMS:]:
-            for each in (path, _sum_of(path)):
+            for each in (path, sum_of(path)):
                 with suppress(OSError):
                     each.unlink()
         for path in self.folder.glob(f"{_BUILDS}*"):
             with suppress(OSError):
                 if time.time() - path.stat().st_mtime > STALE_S:
                     shutil.rmtree(path, ignore_errors=True)
-
-
-def _sum_of(path: Path) -> Path:
-    return path.with_name(f"{path.name}.sum")
-
-
-def _is_sound(path: Path) -> bool:
-    """Whether a file is as it was kept."""
-    try:
-        return _sum_of(path).read_bytes() == sha256_of(path).encode()
-    except OSError:
-        return False
-
-
-def _keep(made: Path, path: Path) -> None:
-    """Puts a file in its place; another process that keeps the same meanwhile makes it anew at the worst.
-
-    Raises:
-        OSError: there is no room.
-    """
-    write_whole(_sum_of(path), sha256_of(made).encode())
-    made.replace(path)
-
-
-def _use(path: Path) -> None:
-    """Notes that a file was used."""
-    for each in (path, _sum_of(path)):
-        os.utime(each)
-
-
-def _put(room: Path, files: Sequence[OutputFile]) -> None:
-    # Names are put together as texts: there are a hundred for each program.
-    for folder in sorted({f.path.rpartition("/")[0] for f in files}):
-        (room / folder).mkdir(parents=True, exist_ok=True)
-    for f in files:
-        with open(f"{room}/{f.path}", "w", encoding="utf-8") as file:  # noqa: PTH123
-            file.write(f.text)
-
-
-@lru_cache(maxsize=16)
-def _digest_of(runtime: tuple[OutputFile, ...]) -> str:
-    """Most of a megabyte, the same for each program of a host."""
-    return _digest((), runtime)
-
-
-def _digest(tools: Sequence[str], files: Sequence[OutputFile] = ()) -> str:
-    found = hashlib.sha256()
-    for part in (*tools, *(text for f in files for text in (f.path, f.text))):
-        data = part.encode("utf-8", "surrogateescape")
-        found.update(f"{len(data)}:".encode())
-        found.update(data)
-    return found.hexdigest()[:32]
-
-
-def _run(
-    command: Sequence[str],
-    folder: Path | None = None,
-    interrupted: Callable[[], bool] = _never,
-) -> subprocess.CompletedProcess[str] | None:
-    """Runs a tool to its end; None when it is not there.
-
-    It does not hear the terminal's Ctrl-C, which would look like a failure of its own, and ends when this process is
-    killed. Its temporary files lie in the folder, and go with it.
-
-    Raises:
-        _InterruptedError: it was wished, and the tool has been ended.
-    """
-    own = {"TMPDIR": str(folder)} if folder else {}
-    with tools_of_ours() as group:
-        try:
-            process = subprocess.Popen(
-                command,
-                cwd=folder,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                errors="replace",
-                process_group=group.number,
-                env={**os.environ, **own, "LC_ALL": "C"},
-            )
-        except OSError:
-            return None
-        try:
-            while True:
-                with suppress(subprocess.TimeoutExpired):
-                    said, errors = process.communicate(timeout=_LOOK_S)
-                    break
-                if interrupted():
-                    raise _InterruptedError
-        except BaseException:
-            group.end(process)
-            process.communicate()
-            raise
-    return subprocess.CompletedProcess(command, process.returncode, said, errors)

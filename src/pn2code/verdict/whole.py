@@ -35,7 +35,7 @@ from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration, OtherOrders
-from pn2code.verify.exploring.result import row as exploration_row
+from pn2code.verify.exploring.result_rows import row as exploration_row
 from pn2code.verify.report.never_text import never
 
 MOST_COLOURS = 200

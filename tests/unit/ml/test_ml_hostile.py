@@ -7,7 +7,7 @@ import pytest
 from helpers.ml import Ml
 from pn2code.ml import library
 from pn2code.ml.parsing.lexer import MAX_TOKENS
-from pn2code.ml.typing.inference import MAX_WORK
+from pn2code.ml.typing.unifier import MAX_WORK
 
 N = 1500
 

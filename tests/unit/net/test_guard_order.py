@@ -8,7 +8,7 @@ from helpers.netbuilder import diagnose, flat
 from pn2code.net.guard_order import doubtful, not_there, rows, unsure
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.outcome import Counts
-from pn2code.verify.exploring.explore import nothing
+from pn2code.verify.exploring.explorer_process import nothing
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Exploration
 

@@ -12,6 +12,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host, program
+from pn2code.toolchain.tool_runs import BuildInterruptedError
 
 FILES = (OutputFile("net.c", "int net;\n"),)
 
@@ -34,7 +35,7 @@ def test_the_next_build_gets_further(tmp_path: Path, monkeypatch: pytest.MonkeyP
         if source.name != "net.c":
             tried += 1
             if tried == 3:
-                raise programs._InterruptedError
+                raise BuildInterruptedError
             compiled.append(source.name)
         (room / f"{source.stem}.o").write_text("object")
         return True

@@ -17,8 +17,8 @@ SLOW = '#!/bin/sh\nsleep 1000 & echo $! >"$SAYS.part" && mv "$SAYS.part" "$SAYS"
 """A compiler driver: what works is a process that it has started."""
 OF_A_NET = """
 from pathlib import Path
-from pn2code.toolchain import programs
-programs._run([{tool!r}, "-c", "net.c"], Path({folder!r}))
+from pn2code.toolchain.tool_runs import run_tool
+run_tool([{tool!r}, "-c", "net.c"], Path({folder!r}))
 """
 OF_MAKE = """
 from pathlib import Path

@@ -173,13 +173,13 @@ def test_a_large_net_is_compiled_quickly(tmp_path: Path, monkeypatch: pytest.Mon
     """The net alone; and under a name of its own, so that the one is never taken for the other."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     commands: list[list[str]] = []
-    run = programs._run
+    run = programs.run_tool
 
     def told(command: list[str], *rest: object) -> object:
         commands.append(command)
         return run(command, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(programs, "_run", told)
+    monkeypatch.setattr(programs, "run_tool", told)
     host = Host("none", net=("-DFOR_THE_NET",), only=("none.c",))
     files = (
         OutputFile("net.c", "int net(void);\nint net(void) { return 7; }\n"),

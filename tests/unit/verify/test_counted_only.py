@@ -9,8 +9,10 @@ from pathlib import Path
 
 from helpers.netbuilder import flat
 from pn2code.cli.verify_sizes import dead_markings
-from pn2code.verify.exploring.explore import LATE_PART, _counted_only
-from pn2code.verify.exploring.result import Exploration, row
+from pn2code.verify.exploring.explore import LATE_PART
+from pn2code.verify.exploring.explorer_process import _counted_only
+from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result_rows import row
 from pn2code.verify.report.text import report
 from pn2code.verify.report.webpage import webpage
 

@@ -10,7 +10,7 @@ import pytest
 from helpers.netbuilder import flat
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.outcome import Counts
-from pn2code.verify.exploring.explore import nothing
+from pn2code.verify.exploring.explorer_process import nothing
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import COUNTED, Exploration, Known, Seen
 

@@ -9,9 +9,10 @@ import pytest
 from helpers.netbuilder import flat
 from pn2code.base.deadline import Deadline
 from pn2code.verify.exploring import result
-from pn2code.verify.exploring.explore import nothing
+from pn2code.verify.exploring.explorer_process import nothing
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.result import Bounds, Exploration, bounds_rows, written
+from pn2code.verify.exploring.result import Bounds, Exploration
+from pn2code.verify.exploring.result_rows import bounds_rows, written
 
 NET = """
 net N

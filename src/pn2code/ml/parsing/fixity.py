@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics, Span
 from pn2code.ml import codes
 from pn2code.ml.parsing import advice
 from pn2code.ml.parsing import syntax as s
-from pn2code.ml.parsing.long_chains import LONG_CHAIN, shortened
+from pn2code.ml.parsing.flat_sequence import FlatSequence
 from pn2code.ml.parsing.tree import is_long
 
 MAX_DEPTH = 200
@@ -24,14 +24,6 @@ MAX_DEPTH = 200
 Fixities = Mapping[str, tuple[int, str]]
 """Infix names: precedence (9 binds tightest) and "left" or "right"."""
 
-_OPEN_ENDED = (s.IfExp, s.WhileExp, s.CaseExp, s.FnExp, s.RaiseExp)
-_OPEN_WORD = {
-    "IfExp": "if",
-    "WhileExp": "while",
-    "CaseExp": "case",
-    "FnExp": "fn",
-    "RaiseExp": "raise",
-}
 
 N = TypeVar("N")
 
@@ -43,7 +35,7 @@ class FixityError(Exception):
 def resolve_expression(exp: s.Exp, fixities: Fixities, d: Diagnostics) -> s.Exp | None:
     """An expression without flat sequences; None when an error was reported."""
     try:
-        return _Resolver(dict(fixities), d).exp(exp)
+        return Resolver(dict(fixities), d).exp(exp)
     except FixityError:
         return None
 
@@ -51,7 +43,7 @@ def resolve_expression(exp: s.Exp, fixities: Fixities, d: Diagnostics) -> s.Exp 
 def resolve_pattern(pattern: s.Pat, fixities: Fixities, d: Diagnostics) -> s.Pat | None:
     """A pattern without flat sequences; None when an error was reported."""
     try:
-        return _Resolver(dict(fixities), d).pat(pattern)
+        return Resolver(dict(fixities), d).pat(pattern)
     except FixityError:
         return None
 
@@ -60,7 +52,7 @@ def resolve_declaration(
     dec: s.Dec, fixities: Fixities, d: Diagnostics
 ) -> tuple[s.Dec, Fixities] | None:
     """A declaration without flat sequences, and the fixities in force after it; None when an error was reported."""
-    resolver = _Resolver(dict(fixities), d)
+    resolver = Resolver(dict(fixities), d)
     try:
         resolved = resolver.dec(dec)
     except FixityError:
@@ -68,13 +60,16 @@ def resolve_declaration(
     return resolved, resolver.fixities
 
 
-class _Resolver:
+class Resolver:
+    """Resolves declarations, expressions and patterns with the infix names in force."""
+
     def __init__(self, fixities: dict[str, tuple[int, str]], d: Diagnostics) -> None:
         self.fixities = fixities
         self._d = d
         self._depth = 0
 
-    def _error(self, message: str, span: Span, hint: str = "") -> FixityError:
+    def error(self, message: str, span: Span, hint: str = "") -> FixityError:
+        """Reports what is wrong; the exception is to be raised."""
         self._d.error(codes.FIXITY_ERROR, message, span, hint=hint)
         return FixityError()
 
@@ -92,6 +87,7 @@ class _Resolver:
     # --- expressions
 
     def exp(self, e: s.Exp) -> s.Exp:
+        """An expression with its operators resolved."""
         self._enter(e.span)
         resolved = self._exp(e)
         self._depth -= 1
@@ -100,7 +96,7 @@ class _Resolver:
     def _exp(self, e: s.Exp) -> s.Exp:
         match e:
             case s.FlatExp():
-                return _Sequence(self, e).resolve()
+                return FlatSequence(self, e).resolve()
             case s.RecordExp():
                 return replace(e, fields=tuple((n, self.exp(x)) for n, x in e.fields))
             case s.ListExp() | s.SequenceExp() | s.VectorExp():
@@ -133,11 +129,13 @@ class _Resolver:
         )
 
     def rules(self, rules: Sequence[s.Rule]) -> tuple[s.Rule, ...]:
+        """Rules with their operators resolved."""
         return tuple(replace(r, pattern=self.pat(r.pattern), body=self.exp(r.body)) for r in rules)
 
     # --- patterns
 
     def pat(self, p: s.Pat) -> s.Pat:
+        """A pattern with its operators resolved."""
         self._enter(p.span)
         resolved = self._pat(p)
         self._depth -= 1
@@ -150,7 +148,7 @@ class _Resolver:
             case s.RecordPat():
                 for label, part in p.fields:
                     if not label:
-                        raise self._error(
+                        raise self.error(
                             "a record pattern lists `label = pattern` or variables", part.span
                         )
                 return replace(p, fields=tuple((n, self.pat(x)) for n, x in p.fields))
@@ -169,7 +167,7 @@ class _Resolver:
         pattern = self._infix_pat([x for x in items[:typed] if _is_pat(x)], span)
         for item in items[typed:]:
             if not isinstance(item, s.Constraint):
-                raise self._error("a type must be the last part of a pattern", item.span)
+                raise self.error("a type must be the last part of a pattern", item.span)
             pattern = s.TypedPat(pattern, item.type, pattern.span.to(item.span))
         return pattern
 
@@ -186,13 +184,13 @@ class _Resolver:
             case [s.NamePat() as name, s.Constraint() as constraint]:
                 annotation = constraint.type
             case _:
-                raise self._error("a variable is needed before `as`", keyword.span)
+                raise self.error("a variable is needed before `as`", keyword.span)
         if is_long(name.name):
-            raise self._error(
+            raise self.error(
                 f"`{name.name}` cannot be declared here", name.span, "a name has no points"
             )
         if not after:
-            raise self._error("a pattern is needed after `as`", keyword.span)
+            raise self.error("a pattern is needed after `as`", keyword.span)
         self._enter(span)
         inner = self._flat_pat(after, after[0].span.to(after[-1].span))
         self._depth -= 1
@@ -200,7 +198,7 @@ class _Resolver:
 
     def _infix_pat(self, items: Sequence[s.Pat], span: Span) -> s.Pat:
         if not items:
-            raise self._error("a pattern is missing before `:`", span)
+            raise self.error("a pattern is missing before `:`", span)
 
         def join(operator: s.Pat, left: s.Pat, right: s.Pat) -> s.Pat:
             assert isinstance(operator, s.NamePat)
@@ -216,11 +214,11 @@ class _Resolver:
                 hint = "patterns that belong together are written as a tuple: `(p, q)`"
                 if isinstance(head, s.LitPat):
                     hint = "a name begins with a letter"
-                raise self._error(
+                raise self.error(
                     "only a constructor can be applied in a pattern", head.span, hint
                 )  # fmt: skip
             if rest:
-                raise self._error(
+                raise self.error(
                     f"`{head.name}` is applied to more than one pattern", rest[0].span,
                     f"a constructor takes one argument; use parentheses: `({head.name} ..)`",
                 )  # fmt: skip
@@ -289,16 +287,17 @@ class _Resolver:
     def foreign(self, operator: s.NameExp) -> FixityError:
         """Reports an operator of another language between its operands."""
         hint = advice.FOREIGN_OPERATORS[operator.name]
-        return self._error(f"`{operator.name}` is not an operator of CPN ML", operator.span, hint)
+        return self.error(f"`{operator.name}` is not an operator of CPN ML", operator.span, hint)
 
     def _missing(self, name: str, side: str, item: object) -> FixityError:
         shown = "the backquote" if name == "`" else f"operator `{name}`"
         hint = advice.missing_operand(name, side)
-        return self._error(f"{shown} has no {side} operand", _span(item), hint)
+        return self.error(f"{shown} has no {side} operand", _span(item), hint)
 
     # --- declarations
 
     def dec(self, dec: s.Dec) -> s.Dec:
+        """A declaration with its operators resolved; afterwards its own `infix` is in force."""
         match dec:
             case s.ValDec():
                 bindings = tuple(
@@ -407,7 +406,7 @@ class _Resolver:
             items.pop()
         name, patterns = self._head(items, left.span)
         if is_long(name.name):
-            raise self._error(
+            raise self.error(
                 f"`{name.name}` cannot be declared here", name.span, "a name has no points"
             )
         resolved = tuple(self.pat(p) for p in patterns)
@@ -429,130 +428,13 @@ class _Resolver:
                 case [s.NamePat() as name, _, *_] if not any(map(self._is_infix_pat, atoms)):
                     return name, list(atoms[1:])
                 case [s.NamePat() as name]:
-                    raise self._error(
+                    raise self.error(
                         f"function `{name.name}` has no argument", name.span,
                         f"write `val {name.name} = ..`, or `fun {name.name} () = ..`",
                     )  # fmt: skip
-        raise self._error(
+        raise self.error(
             "this is not the left side of a function", span, "`fun name argument = ..`"
         )
-
-
-class _Sequence:
-    """One flat expression: `handle` binds loosest, then `orelse`, `andalso`, `:`, and infix operators."""
-
-    def __init__(self, resolver: _Resolver, flat: s.FlatExp) -> None:
-        self._r = resolver
-        self._items = flat.items
-        self._at = 0
-        self._around: dict[int, Span] = {}
-        """Of operands in parentheses, by `id`: their spans with these."""
-
-    def resolve(self) -> s.Exp:
-        exp = self._orelse()
-        while self._at < len(self._items):
-            item = self._items[self._at]
-            if not isinstance(item, s.Handler):
-                raise self._r._error("this cannot follow `handle`", item.span)
-            exp = s.HandleExp(exp, self._r.rules(item.rules), self._span(exp).to(item.span))
-            self._at += 1
-        return exp
-
-    def _word(self) -> str:
-        item = self._items[self._at] if self._at < len(self._items) else None
-        return item.word if isinstance(item, s.Keyword) else ""
-
-    def _orelse(self) -> s.Exp:
-        parts = [self._andalso()]
-        while self._word() == "orelse":
-            self._at += 1
-            parts.append(self._andalso())
-        return _logic(False, parts, self._span)
-
-    def _andalso(self) -> s.Exp:
-        parts = [self._typed()]
-        while self._word() == "andalso":
-            self._at += 1
-            parts.append(self._typed())
-        return _logic(True, parts, self._span)
-
-    def _typed(self) -> s.Exp:
-        exp = self._infix()
-        while self._at < len(self._items):
-            item = self._items[self._at]
-            if not isinstance(item, s.Constraint):
-                break
-            exp = s.TypedExp(exp, item.type, self._span(exp).to(item.span))
-            self._at += 1
-        if self._at < len(self._items) and not isinstance(
-            self._items[self._at], s.Keyword | s.Handler
-        ):
-            item = self._items[self._at]
-            raise self._r._error(
-                "this cannot follow a type", item.span, "use parentheses: `(e : t)`"
-            )
-        return exp
-
-    def _infix(self) -> s.Exp:
-        start = self._at
-        atoms: list[s.Exp] = []
-        while self._at < len(self._items):
-            item = self._items[self._at]
-            if isinstance(item, s.Keyword | s.Constraint | s.Handler):
-                break
-            atoms.append(item)
-            self._at += 1
-        if not atoms:
-            at = self._items[min(start, len(self._items) - 1)]
-            word = f"`{at.word}`" if isinstance(at, s.Keyword) else "this"
-            raise self._r._error(f"an expression is missing beside {word}", at.span)
-        if len(atoms) > 1 and isinstance(atoms[-1], _OPEN_ENDED):
-            word = _OPEN_WORD[type(atoms[-1]).__name__]
-            raise self._r._error(
-                f"`{word}` must be in parentheses here", atoms[-1].span, f"write `({word} ..)`"
-            )
-        exp = self._r.infix(atoms, self._operator, self._operand, self._join)
-        return shortened(exp, self._r.fixities) if len(atoms) > LONG_CHAIN else exp
-
-    def _operator(self, item: s.Exp) -> tuple[str, tuple[int, str]] | None:
-        if isinstance(item, s.NameExp) and not item.op and item.name in self._r.fixities:
-            return item.name, self._r.fixities[item.name]
-        return None
-
-    def _operand(self, atoms: Sequence[s.Exp]) -> s.Exp:
-        for atom in atoms[1:-1]:
-            if (
-                isinstance(atom, s.NameExp)
-                and not atom.op
-                and atom.name in advice.FOREIGN_OPERATORS
-            ):
-                raise self._r.foreign(atom)
-        exp = self._r.exp(atoms[0])
-        if len(atoms) == 1:
-            self._around[id(exp)] = atoms[0].span
-        for atom in atoms[1:]:
-            exp = s.ApplyExp(exp, self._r.exp(atom), atoms[0].span.to(atom.span))
-        return exp
-
-    def _join(self, operator: s.Exp, left: s.Exp, right: s.Exp) -> s.Exp:
-        assert isinstance(operator, s.NameExp)
-        return s.InfixExp(operator, left, right, self._span(left).to(self._span(right)))
-
-    def _span(self, exp: s.Exp) -> Span:
-        """The span of a part of this sequence, with the parentheses around it."""
-        return self._around.get(id(exp), exp.span)
-
-
-def _logic(conjunction: bool, parts: Sequence[s.Exp], span_of: Callable[[s.Exp], Span]) -> s.Exp:
-    if len(parts) > LONG_CHAIN:  # in which order does not matter
-        middle = len(parts) // 2
-        left = _logic(conjunction, parts[:middle], span_of)
-        right = _logic(conjunction, parts[middle:], span_of)
-        return s.LogicExp(conjunction, left, right, span_of(left).to(span_of(right)))
-    exp = parts[-1]
-    for part in reversed(parts[:-1]):
-        exp = s.LogicExp(conjunction, part, exp, span_of(part).to(span_of(exp)))
-    return exp
 
 
 def _pair(left: s.Pat, right: s.Pat) -> s.RecordPat:

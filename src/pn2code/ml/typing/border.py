@@ -9,7 +9,8 @@ from typing import TypeVar
 from pn2code.diagnostics import SourceText, Span
 from pn2code.ml import codes
 from pn2code.ml.typing.context import Context, TooDeepError
-from pn2code.ml.typing.inference import ICon, TypeTooLargeError
+from pn2code.ml.typing.inference import ICon
+from pn2code.ml.typing.unifier import TypeTooLargeError
 
 T = TypeVar("T")
 

@@ -40,7 +40,8 @@ from pn2code.ml.typing.environment import (
     TypeCon,
     UnitEntry,
 )
-from pn2code.ml.typing.inference import MAX_TYPE_NODES, from_type
+from pn2code.ml.typing.inference import from_type
+from pn2code.ml.typing.unifier import MAX_TYPE_NODES
 
 _BRACKETS = re.compile(r"\s*\[.*\]\s*", re.DOTALL)
 _BARE_FN = re.compile(r"\s*fn\b")

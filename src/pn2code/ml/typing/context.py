@@ -1,4 +1,4 @@
-"""What all parts of the elaborator share: diagnostics, unifier, scope, and how types are shown to people."""
+"""What all parts of the elaborator share: diagnostics, unifier, scope, and how mistakes in types are reported."""
 
 from __future__ import annotations
 
@@ -23,21 +23,19 @@ from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.environment import Binding, ConEntry, Scope, library_scope
 from pn2code.ml.typing.inference import (
     ERROR,
-    IAbstract,
     ICon,
-    IError,
     IFun,
     IRec,
     Meta,
     Quant,
     Ty,
-    Unifier,
-    UnifyError,
     from_type,
-    parts,
     prune,
     to_type,
 )
+from pn2code.ml.typing.shown_types import Shower
+from pn2code.ml.typing.type_advice import conversion, label_notes
+from pn2code.ml.typing.unifier import Unifier, UnifyError
 
 BY_SOCKETS = "`simulate --sockets`"
 """Stands in what is said of a function that a run with connections to other programs has."""
@@ -494,105 +492,3 @@ def suggestion(name: str, *known: Iterable[str]) -> str:
 def _name(t: Ty) -> str:
     t = prune(t)
     return t.name if isinstance(t, ICon) else ""
-
-
-def label_notes(found: Ty, expected: Ty) -> list[str]:
-    """Components or fields that are missing or too many."""
-    f, e = prune(found), prune(expected)
-    if not isinstance(f, IRec) or not isinstance(e, IRec):
-        return []
-    here, wanted = [n for n, _ in f.fields], [n for n, _ in e.fields]
-    if here == wanted:
-        return []
-    if all(n.isdigit() for n in (*here, *wanted)):
-        return [f"{len(wanted)} components are expected, here are {len(here)}"]
-    if any(n.isdigit() for n in (*here, *wanted)):
-        return []
-    notes = [f"field `{n}` is missing" for n in wanted if n not in here]
-    return notes + [f"field `{n}` does not belong here" for n in here if n not in wanted]
-
-
-def quoted(name: str) -> str:
-    """A name in back-ticks, unless it has one itself."""
-    if name == "`":
-        return "the backquote"
-    return f'"{name}"' if "`" in name else f"`{name}`"
-
-
-def conversion(found: Ty, wanted: Iterable[str]) -> str:
-    """How to convert between the number types."""
-    t = prune(found)
-    name = t.name if isinstance(t, ICon) else ""
-    if isinstance(t, Meta) and t.among:
-        name = t.among[0]
-    pairs = {
-        ("int", "real"): "convert with `real`, or write the number with a decimal point: `5.0`",
-        ("real", "int"): "convert with `floor`, `round` or `trunc`",
-        ("int", "string"): "convert with `Int.toString`",
-        ("real", "string"): "convert with `Real.toString`",
-        ("IntInf.int", "int"): "convert with `IntInf.toInt`",
-        ("int", "IntInf.int"): "convert with `IntInf.fromInt`",
-        (
-            "real",
-            "IntInf.int",
-        ): "convert with `floor`, `round` or `trunc`, and then with `IntInf.fromInt`",
-        ("IntInf.int", "string"): "convert with `IntInf.toString`",
-        ("string", "int"): "convert with `Option.valOf (Int.fromString ..)`",
-        ("char", "string"): "convert with `str`",
-        ("bool", "string"): "convert with `Bool.toString`",
-    }
-    return next((pairs[name, w] for w in wanted if (name, w) in pairs), "")
-
-
-class Shower:
-    """Types as text; unknown ones get letters, the same in one message."""
-
-    def __init__(self, ctx: Context) -> None:
-        self._ctx = ctx
-        self._letters: dict[int, str] = {}
-
-    def __call__(self, t: Ty) -> str:
-        """The text."""
-        t = prune(t)
-        if isinstance(t, IError):
-            return "?"
-        if isinstance(t, Meta) and t.among:
-            return t.among[0]
-        if isinstance(t, Meta) and t.fields is not None:
-            return "{" + ", ".join(f"{n}: {self(f)}" for n, f in t.fields.items()) + ", ...}"
-        if isinstance(t, Meta | Quant):
-            letter = self._letters.setdefault(id(t), chr(ord("a") + len(self._letters) % 26))
-            return ("''" if t.equality else "'") + letter
-        if isinstance(t, IFun):
-            argument = self(t.argument)
-            if isinstance(prune(t.argument), IFun):
-                argument = f"({argument})"
-            return f"{argument} -> {self(t.result)}"
-        if isinstance(t, IAbstract):
-            t = ICon(t.name, t.args)
-        if isinstance(t, ICon):
-            return self._con(t)
-        if _is_closed(t) and (name := self._ctx.type_name(to_type(t))):
-            return name
-        if not t.fields:
-            return "unit"
-        if len(t.fields) > 1 and all(n == str(i) for i, (n, _) in enumerate(t.fields, 1)):
-            return " * ".join(self._inner(f) for _, f in t.fields)
-        return "{" + ", ".join(f"{n}: {self(f)}" for n, f in t.fields) + "}"
-
-    def _con(self, t: ICon) -> str:
-        name = t.name.split("#")[0]
-        if not t.args:
-            return name
-        if len(t.args) == 1:
-            return f"{self._inner(t.args[0])} {name}"
-        return f"({', '.join(map(self, t.args))}) {name}"
-
-    def _inner(self, t: Ty) -> str:
-        text = self(t)
-        return f"({text})" if " * " in text or "->" in text else text
-
-
-def _is_closed(t: Ty) -> bool:
-    t = prune(t)
-    return not isinstance(t, Meta | Quant | IError) and all(map(_is_closed, parts(t)))

@@ -19,7 +19,7 @@ from pn2code.ml.library.datatypes import FALSE, LITERAL_TYPES, TRUE, WORD_TYPES
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing import matches, type_advice
 from pn2code.ml.typing.annotations import Annotations
-from pn2code.ml.typing.context import BROKEN, Context, Draft, no_expression, quoted
+from pn2code.ml.typing.context import BROKEN, Context, Draft, no_expression
 from pn2code.ml.typing.environment import (
     Binding,
     BuiltinEntry,
@@ -53,6 +53,7 @@ from pn2code.ml.typing.inference import (
 from pn2code.ml.typing.matches import BuiltRule
 from pn2code.ml.typing.names import Names
 from pn2code.ml.typing.patterns import Bindings, Deref, Patterns, expand
+from pn2code.ml.typing.shown_types import quoted
 
 _ASSOCIATIVE = frozenset({"Ms.++", "Time.+++", "String.^", "List.@"})
 """Long chains of these become balanced trees: a sum of 1000 terms is then 10 levels deep."""

@@ -1,14 +1,10 @@
-"""Inscriptions of a net: arc expressions, initial markings, guards, delays, priorities, code segments."""
+"""Inscriptions of a net: arc expressions, initial markings, guards, delays, priorities."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate
-from typing import TypeVar
 
-from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -18,12 +14,9 @@ from pn2code.ml.core.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of,
 from pn2code.ml.library.builtins import BUILTINS
 from pn2code.ml.library.datatypes import FALSE, TRUE
 from pn2code.ml.parsing import syntax as s
-from pn2code.ml.parsing.fixity import Fixities, resolve_expression, resolve_pattern
+from pn2code.ml.parsing.fixity import Fixities, resolve_expression
 from pn2code.ml.parsing.lexer import tokenize
 from pn2code.ml.parsing.parser import (
-    is_action_of_comments,
-    misplaced_comment,
-    parse_code,
     parse_expression,
     parse_expressions,
 )
@@ -34,15 +27,12 @@ from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
     BuiltinEntry,
-    InstanceEntry,
     Scope,
-    UnsupportedEntry,
 )
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import (
     I_BOOL,
     I_INT,
-    I_UNIT,
     ICon,
     Ty,
     from_type,
@@ -50,10 +40,10 @@ from pn2code.ml.typing.inference import (
     prune,
     to_type,
 )
+from pn2code.ml.typing.inscription_scope import InscriptionScope
+from pn2code.ml.typing.layered_patterns import comparing, matches
 from pn2code.ml.typing.mismatches import explain
 from pn2code.ml.typing.patterns import Bindings, Patterns
-
-T = TypeVar("T")
 
 _ALL_OF_LIST = "write `List.all (fn c => c) (..)`, which is one condition"
 
@@ -61,16 +51,7 @@ _DELAYS = {"Time.@+": "Time.token@+", "Time.@++": "Time.token@++"}
 """How a delay is added to a multi-set, and to one token."""
 
 
-@frozen
-class TypedCode:
-    """A code segment: the variables it reads, those it binds, and the action giving a value (tuple) for the latter."""
-
-    inputs: tuple[Symbol, ...]
-    outputs: tuple[Symbol, ...]
-    action: core.Exp
-
-
-class Inscriptions:
+class Inscriptions(InscriptionScope):
     """Types inscriptions; their texts may use the net variables of `variables`."""
 
     def __init__(
@@ -81,39 +62,9 @@ class Inscriptions:
         variables: Scope,
         computed: Callable[[core.Exp], Computed],
     ) -> None:
-        self._ctx = ctx
-        self._expressions = expressions
+        super().__init__(ctx, expressions, variables)
         self._patterns = patterns
-        self._variables = variables
         self._computed = computed
-
-    @contextmanager
-    def _scope(self, scope: Scope, *, on_page: bool = False) -> Iterator[None]:
-        """One inscription: what is declared in it is local. One that stands on a page knows the number of its
-        instance, `inst ()`, unless the net has something else of that name."""
-        self._ctx.scope = Scope(scope)
-        if on_page and isinstance(scope.value("inst"), UnsupportedEntry):
-            self._ctx.scope.values["inst"] = InstanceEntry()
-        self._ctx.on_page = on_page
-        self._ctx.tainted = False
-        self._ctx.unifier.level = 1
-        self._ctx.tyvars.append({})
-        try:
-            yield
-        finally:
-            self._ctx.scope = self._ctx.top
-            self._ctx.on_page = False
-            self._ctx.unifier.level = 0
-            self._ctx.tyvars.clear()
-
-    def _finish(self, before: int, build: Callable[[], T]) -> T | None:
-        """What `build` gives, unless something was reported since `before` or uses something broken."""
-        if self._ctx.errors == before:
-            self._ctx.resolve_pending()
-        self._ctx.open_records.clear()
-        if self._ctx.errors > before or self._ctx.tainted:
-            return None
-        return build()
 
     # --- arc expressions and initial markings
 
@@ -193,31 +144,14 @@ class Inscriptions:
                     )
                     return None
                 own = pattern()  # with symbols of its own: they are compared with the variables
-                test = _matches(whole, own, variables)
+                test = matches(whole, own, variables)
                 for binding in bindings.values():
                     binding.symbol = variables[binding.name]
-                inner = _comparing(pattern(), constants)
+                inner = comparing(pattern(), constants)
                 bound = core.PAs(whole.symbol, inner, t, written.span)
                 return whole, bound, test
 
             return self._finish(before, build)
-
-    @contextmanager
-    def _one_mistake(self) -> Iterator[None]:
-        """Of several errors in a short text says all unknown names, or else the first one only.
-
-        The others are mostly consequences: `n ++ m` has two operands that are no multi-sets.
-        """
-        outer, self._ctx.d = self._ctx.d, Diagnostics()
-        try:
-            yield
-        finally:
-            found, self._ctx.d = self._ctx.d, outer
-            errors = found.errors
-            unknown = [e for e in errors if e.code == codes.UNBOUND]
-            errors.sort(key=lambda e: (e.origin.line, e.origin.column))
-            kept = unknown or errors[:1]
-            outer.items += [x for x in found.items if x not in errors or x in kept]
 
     def plain(self, exp: s.Exp, types: Sequence[Type], what: str) -> tuple[int, core.Exp] | None:
         """An expression without net variables."""
@@ -480,93 +414,6 @@ class Inscriptions:
             )
         return value
 
-    # --- code segments
-
-    def code_segment(self, text: SourceText, fixities: Fixities) -> TypedCode | None:
-        """Inputs, outputs and action."""
-        parsed = parse_code(text, self._ctx.d)
-        if parsed is None:
-            return None
-        before = self._ctx.errors
-        inputs = self._code_variables(parsed.inputs, "input", fixities)
-        outputs = self._code_variables(parsed.outputs, "output", fixities)
-        if inputs is None or outputs is None:
-            return None
-        written = parsed.action
-        if written is None and not outputs and is_action_of_comments(text):
-            written = s.RecordExp((), text.span())
-        if written is None:
-            self._ctx.error(
-                codes.CODE_SEGMENT,
-                "code segment has no `action`, which CPN Tools wants",
-                text.span(),
-                hint="write `action ..;` after it, with a value for each output variable, or `action ();`",
-            )
-            return None
-        comment = misplaced_comment(text)
-        if comment is not None:
-            self._ctx.error(
-                codes.CODE_SEGMENT,
-                "CPN Tools does not read a comment before `action`, or after the last `;`",
-                text.span(*comment),
-                hint="put it behind the word `action`, or remove the `;` before it",
-            )
-            return None
-        exp: s.Exp | None = resolve_expression(written, fixities, self._ctx.d)
-        if exp is None:
-            return None
-        scope = Scope(self._ctx.top)
-        for symbol in inputs:
-            scope.values[symbol.name] = Binding(
-                symbol.name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
-            )
-        with self._scope(scope, on_page=True):
-            wanted = from_type(tuple_of(*(x.type for x in outputs)), []) if outputs else I_UNIT
-            action = self._expressions.check(exp, wanted, "action")
-            return self._finish(before, lambda: TypedCode(inputs, outputs, action.build()))
-
-    def _code_variables(
-        self, pattern: s.Pat | None, word: str, fixities: Fixities
-    ) -> tuple[Symbol, ...] | None:
-        if pattern is None:
-            return ()
-        resolved = resolve_pattern(pattern, fixities, self._ctx.d)
-        if resolved is None:
-            return None
-        parts = [p for _, p in resolved.fields] if isinstance(resolved, s.RecordPat) else [resolved]
-        out: list[Symbol] = []
-        for part in parts:
-            if not isinstance(part, s.NamePat):
-                self._ctx.error(
-                    codes.CODE_SEGMENT,
-                    f"`{word}` lists something that is not a variable",
-                    part.span,
-                    hint=f"only variables are allowed there: `{word} (x, y)`",
-                )
-                return None
-            entry = self._variables.values.get(part.name)
-            if isinstance(entry, BrokenEntry):
-                self._ctx.tainted = True
-                return None
-            if not isinstance(entry, Binding) or entry.symbol is None:
-                self._ctx.error(
-                    codes.UNBOUND,
-                    f"`{part.name}` is not a variable of the net",
-                    part.span,
-                    hint=f"`{word}` lists variables declared with `var`",
-                )
-                return None
-            if entry.symbol in out:
-                self._ctx.error(
-                    codes.DUPLICATE_NAME,
-                    f"`{part.name}` is listed twice",
-                    part.span,
-                    hint="remove one of them",
-                )
-                return None
-            out.append(entry.symbol)
-        return tuple(out)
-
 
 def _is_written_list(e: s.Exp) -> bool:
     """Whether an expression shows its items: `a :: b :: nil`."""
@@ -589,53 +436,4 @@ def _all_true(conditions: core.Exp) -> core.Exp:
     return core.Apply(core.Apply(function, same, over, span), conditions, BOOL, span)
 
 
-def _matches(whole: core.Var, pattern: core.Pat, variables: Mapping[str, Symbol]) -> core.Exp:
-    """Whether a token matches a pattern whose variables have the values of net variables."""
-    span = pattern.span
-    test: core.Exp = core.Con(TRUE, BOOL, span)
-    false = core.Con(FALSE, BOOL, span)
-    for own in _symbols(pattern):
-        pair = core.RecordExp(
-            (
-                ("1", core.Var(own, own.type, span)),
-                ("2", core.Var(variables[own.name], own.type, span)),
-            ),
-            tuple_of(own.type, own.type),
-            span,
-        )
-        equals = core.Builtin("=", TFun(pair.type, BOOL), span, (own.type,))
-        test = core.If(core.Apply(equals, pair, BOOL, span), test, false, BOOL, span)
-    rules = [core.Rule(pattern, test, span), core.Rule(core.PWild(whole.type, span), false, span)]
-    return core.Case(whole, tuple(rules), BOOL, span)
-
-
-def _comparing(pattern: core.Pat, constants: Mapping[Symbol, core.Var]) -> core.Pat:
-    """The pattern, which compares with declared values instead of binding their names."""
-    match pattern:
-        case core.PVar(symbol, t, span) if symbol in constants:
-            return core.PEqual(constants[symbol], t, span)
-        case core.PAs(pattern=inner):
-            return replace(pattern, pattern=_comparing(inner, constants))
-        case core.PRecord(fields):
-            return replace(pattern, fields=tuple((k, _comparing(p, constants)) for k, p in fields))
-        case core.PCon(argument=inner) if inner is not None:
-            return replace(pattern, argument=_comparing(inner, constants))
-        case _:
-            return pattern
-
-
-def _symbols(pattern: core.Pat) -> list[Symbol]:
-    match pattern:
-        case core.PVar(symbol):
-            return [symbol]
-        case core.PAs(symbol, inner):
-            return [symbol, *_symbols(inner)]
-        case core.PRecord(fields):
-            return [x for _, p in fields for x in _symbols(p)]
-        case core.PCon(argument=inner) if inner is not None:
-            return _symbols(inner)
-        case _:
-            return []
-
-
-__all__ = ["Inscriptions", "TypedCode", "timed_of"]
+__all__ = ["Inscriptions", "timed_of"]

@@ -11,10 +11,11 @@ from pn2code.ml.core.colsets import definition
 from pn2code.ml.core.types import TCon, Type
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing import type_advice
-from pn2code.ml.typing.context import Context, Draft, conversion, label_notes
+from pn2code.ml.typing.context import Context, Draft
 from pn2code.ml.typing.environment import Binding
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import ICon, IRec, Ty, from_type, prune, to_type
+from pn2code.ml.typing.type_advice import conversion, label_notes
 
 
 def explain(

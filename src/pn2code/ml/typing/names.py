@@ -15,7 +15,7 @@ from pn2code.ml.parsing import advice
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.parser import declared_names
 from pn2code.ml.typing.colset_members import member_type, members_of, timed_member
-from pn2code.ml.typing.context import BROKEN, Context, Draft, quoted, suggestion
+from pn2code.ml.typing.context import BROKEN, Context, Draft, suggestion
 from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
@@ -44,6 +44,7 @@ from pn2code.ml.typing.inference import (
     prune,
     to_type,
 )
+from pn2code.ml.typing.shown_types import quoted
 
 _SHORTEST_SUGGESTED = 4
 """Characters of a name of the library that a misspelt name may mean."""

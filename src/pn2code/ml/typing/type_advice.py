@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from pn2code.diagnostics import Span
 from pn2code.diagnostics.suggestions import nearest
@@ -294,3 +294,44 @@ def among(names: tuple[str, ...]) -> str:
     if set(names) > _NUMBERS:
         return "a number or a string"
     return " or ".join(f"`{n}`" for n in names)
+
+
+def label_notes(found: Ty, expected: Ty) -> list[str]:
+    """Components or fields that are missing or too many."""
+    f, e = prune(found), prune(expected)
+    if not isinstance(f, IRec) or not isinstance(e, IRec):
+        return []
+    here, wanted = [n for n, _ in f.fields], [n for n, _ in e.fields]
+    if here == wanted:
+        return []
+    if all(n.isdigit() for n in (*here, *wanted)):
+        return [f"{len(wanted)} components are expected, here are {len(here)}"]
+    if any(n.isdigit() for n in (*here, *wanted)):
+        return []
+    notes = [f"field `{n}` is missing" for n in wanted if n not in here]
+    return notes + [f"field `{n}` does not belong here" for n in here if n not in wanted]
+
+
+def conversion(found: Ty, wanted: Iterable[str]) -> str:
+    """How to convert between the number types."""
+    t = prune(found)
+    name = t.name if isinstance(t, ICon) else ""
+    if isinstance(t, Meta) and t.among:
+        name = t.among[0]
+    pairs = {
+        ("int", "real"): "convert with `real`, or write the number with a decimal point: `5.0`",
+        ("real", "int"): "convert with `floor`, `round` or `trunc`",
+        ("int", "string"): "convert with `Int.toString`",
+        ("real", "string"): "convert with `Real.toString`",
+        ("IntInf.int", "int"): "convert with `IntInf.toInt`",
+        ("int", "IntInf.int"): "convert with `IntInf.fromInt`",
+        (
+            "real",
+            "IntInf.int",
+        ): "convert with `floor`, `round` or `trunc`, and then with `IntInf.fromInt`",
+        ("IntInf.int", "string"): "convert with `IntInf.toString`",
+        ("string", "int"): "convert with `Option.valOf (Int.fromString ..)`",
+        ("char", "string"): "convert with `str`",
+        ("bool", "string"): "convert with `Bool.toString`",
+    }
+    return next((pairs[name, w] for w in wanted if (name, w) in pairs), "")

@@ -39,7 +39,6 @@ from pn2code.semantics.library.colour_files import (
     read_value,
 )
 from pn2code.semantics.library.functions import checked
-from pn2code.semantics.values.colours import ALIKE
 from pn2code.semantics.values.data import (
     UNIT,
     Data,
@@ -54,6 +53,7 @@ from pn2code.semantics.values.data import (
     order,
     some,
 )
+from pn2code.semantics.values.no_numbers import ALIKE
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluation.evaluate import Evaluator

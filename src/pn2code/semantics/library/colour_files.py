@@ -15,7 +15,8 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.semantics.evaluation.files import InStream
 from pn2code.semantics.library.builtins_integers import read_integer
 from pn2code.semantics.library.builtins_real_texts import read_real
-from pn2code.semantics.values.colours import Colours, assemble, component
+from pn2code.semantics.values.colour_components import assemble, component
+from pn2code.semantics.values.colours import Colours
 from pn2code.semantics.values.data import UNIT, Data, MlException, Timed, Value, exception
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from pn2code.base.real_json import real_to_json
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.semantics.values.colours import assemble, component, parts_of
+from pn2code.semantics.values.colour_components import assemble, component, parts_of
 from pn2code.semantics.values.data import UNIT, Data, Value
 
 Json = Any

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.semantics.values.colours import assemble, component
+from pn2code.semantics.values.colour_components import assemble, component
 from pn2code.semantics.values.data import UNIT, Data, Value
 
 Reading = Iterator[tuple[Value, int]]

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
-from functools import cache
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.ml.core.types import label_key
 from pn2code.semantics.values import colour_messages
 from pn2code.semantics.values.data import (
     UNIT,
     Data,
     MlException,
-    MlLimit,
     Timed,
     Value,
     equal,
@@ -31,74 +28,23 @@ from pn2code.semantics.values.data import (
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluation.evaluate import Evaluator
-
-
-MOST_VALUES = 2_000_000
-"""Most values of a colour set that are listed."""
-
-
-class _Least:
-    """Before all numbers."""
-
-    def __lt__(self, other: object) -> bool:
-        return other is not self
-
-    def __gt__(self, other: object) -> bool:
-        return False
-
-
-class _Alike:
-    """Neither before nor after any number, and so like each of them where one goes on with what comes next."""
-
-    def __eq__(self, other: object) -> bool:
-        return True
-
-    def __lt__(self, other: object) -> bool:
-        return False
-
-    def __gt__(self, other: object) -> bool:
-        return False
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-LEAST, ALIKE = _Least(), _Alike()
-"""What is no number, in orders: that of tokens is one, so that markings have one text; that of `lt` is none."""
+from pn2code.semantics.values.colour_bounds import (
+    has_bounds,
+    is_numbered,
+    is_within,
+    lengths_of,
+    no_bounds,
+    number_of_sequences,
+    numbers_of,
+    out_of_range,
+    refuse_too_many,
+)
+from pn2code.semantics.values.colour_components import assemble, component, parts_of
+from pn2code.semantics.values.no_numbers import LEAST
 
 
 class NotFinite(ValueError):  # noqa: N818
     """A real that has to be finite is not."""
-
-
-def component(c: Colset) -> Colset:
-    """The base of a list, subset or alias."""
-    base = c.components[0]
-    assert base is not None
-    return base
-
-
-def parts_of(c: Colset, value: Any) -> list[tuple[str, Colset, Value]]:
-    """Label, colour set and value of each component of a product or record, in declared order."""
-    if c.kind is Kind.PRODUCT:
-        named = enumerate(c.components, 1)
-        return [(str(i), p, x) for (i, p), x in zip(named, value, strict=True) if p is not None]
-    named_parts = zip(c.labels, c.components, _places(c.labels), strict=True)
-    return [(label, part, value[at]) for label, part, at in named_parts if part is not None]
-
-
-@cache
-def _places(labels: tuple[str, ...]) -> tuple[int, ...]:
-    """Where the value of a record has each field."""
-    stored = sorted(labels, key=label_key)
-    return tuple(stored.index(label) for label in labels)
-
-
-def assemble(c: Colset, values: Sequence[Value]) -> tuple[Value, ...]:
-    """The value of a product or record from its components in declared order."""
-    if c.kind is Kind.PRODUCT:
-        return tuple(values)
-    by_label = dict(zip(c.labels, values, strict=True))
-    return tuple(by_label[label] for label in sorted(by_label, key=label_key))
 
 
 class Colours:
@@ -154,7 +100,7 @@ class Colours:
         """
         if c not in self._all:
             if c.kind in (Kind.INT, Kind.INTINF, Kind.INDEX, Kind.PRODUCT, Kind.RECORD, Kind.UNION):
-                _enough(c, self.size(c))
+                refuse_too_many(c, self.size(c))
             self._all[c] = tuple(self._enumerate(c))
         return self._all[c]
 
@@ -176,27 +122,27 @@ class Colours:
             case Kind.UNION:
                 return self._enumerate_union(c)
             case Kind.INT | Kind.INTINF | Kind.INDEX:
-                numbers = _numbers(c)
+                numbers = numbers_of(c)
                 return (
                     [Data(c.names[0], 0, i) for i in numbers] if c.kind is Kind.INDEX else numbers
                 )
             case Kind.LIST:
                 if not isinstance(c.low, int) or not isinstance(c.high, int):
-                    raise _unbounded(c)
+                    raise no_bounds(c)
                 items = self.all(component(c))
-                _enough(c, self.size(c))
+                refuse_too_many(c, self.size(c))
                 lists = (itertools.product(items, repeat=n) for n in range(c.low, c.high + 1))
                 return [items[::-1] for items in itertools.chain.from_iterable(lists)]
             case Kind.STRING:
                 if c.length is None or not isinstance(c.low, str) or not isinstance(c.high, str):
-                    raise _unbounded(c)
+                    raise no_bounds(c)
                 letters = [chr(code) for code in range(ord(c.low), ord(c.high) + 1)]
-                _enough(c, self.size(c))
+                refuse_too_many(c, self.size(c))
                 low, high = c.length
                 words = (itertools.product(letters, repeat=n) for n in range(low, high + 1))
                 return ["".join(word) for word in itertools.chain.from_iterable(words)]
             case _:
-                raise _unbounded(c)
+                raise no_bounds(c)
 
     def _candidates(self, c: Colset) -> tuple[Value, ...]:
         """Values among which a subset's are; those of a list in its order."""
@@ -225,14 +171,14 @@ class Colours:
             case Kind.UNION:
                 return sum(1 if part is None else self.size(part) for part in c.components)
             case Kind.INT | Kind.INTINF | Kind.INDEX:
-                return len(_numbers(c))
+                return len(numbers_of(c))
             case Kind.SUBSET if c.members is None:
                 return self.size(component(c))
             case Kind.ENUM:
                 return len(c.names)
             case Kind.LIST | Kind.STRING:
-                low, high = _lengths(c)
-                return _sequences(self._letters(c), low, high + 1)
+                low, high = lengths_of(c)
+                return number_of_sequences(self._letters(c), low, high + 1)
             case _:
                 return len(self.all(c))
 
@@ -263,29 +209,29 @@ class Colours:
                 own = c.components[value.tag]
                 return before if own is None else before + self.ord(own, value.argument)
             case Kind.INDEX:
-                return int(value.argument - _numbers(c)[0])
+                return int(value.argument - numbers_of(c)[0])
             case Kind.INT | Kind.INTINF:
-                if value not in _numbers(c):
-                    raise _out_of_range()
-                return int(value - _numbers(c)[0])
+                if value not in numbers_of(c):
+                    raise out_of_range()
+                return int(value - numbers_of(c)[0])
             case Kind.LIST | Kind.STRING:
-                low, _ = _lengths(c)
+                low, _ = lengths_of(c)
                 if not self.legal(c, value):
-                    raise _out_of_range()
+                    raise out_of_range()
                 places = [
                     ord(x) - ord(str(c.low)) if c.kind is Kind.STRING else self.ord(component(c), x)
                     for x in value
                 ]
-                shorter = _sequences(self._letters(c), low, len(value))
+                shorter = number_of_sequences(self._letters(c), low, len(value))
                 return shorter + sum(n * x for n, x in enumerate(reversed(places), 1))
             case Kind.ENUM:  # there may be many thousands
                 if c.names[value.tag : value.tag + 1] != (value.name,):
-                    raise _out_of_range()
+                    raise out_of_range()
                 return int(value.tag)
             case _:
                 everything = self.all(c)
                 if value not in everything:
-                    raise _out_of_range()
+                    raise out_of_range()
                 return everything.index(value)
 
     def col(self, c: Colset, position: int) -> Value:
@@ -295,7 +241,7 @@ class Colours:
             if found < self.evaluator.min_int or found > self.evaluator.max_int:
                 raise MlException(exception("Overflow"))
         if c.kind is not Kind.INDEX and not 0 <= position < self.size(c):
-            raise _out_of_range()
+            raise out_of_range()
         match c.kind:
             case Kind.ALIAS:
                 return self.col(component(c), position)
@@ -308,15 +254,15 @@ class Colours:
             case Kind.UNION:
                 return self._col_of_union(c, position)
             case Kind.INT | Kind.INTINF:
-                return _numbers(c)[position]
+                return numbers_of(c)[position]
             case Kind.INDEX:
-                return Data(c.names[0], 0, _numbers(c)[0] + position)
+                return Data(c.names[0], 0, numbers_of(c)[0] + position)
             case Kind.ENUM:
                 return Data(c.names[position], position)
             case _:
                 everything = self.all(c)
                 if position >= len(everything):
-                    raise _out_of_range()
+                    raise out_of_range()
                 return everything[position]
 
     def _col_of_union(self, c: Colset, position: int) -> Value:
@@ -325,15 +271,15 @@ class Colours:
             if position < size:
                 return Data(name, tag, None if part is None else self.col(part, position))
             position -= size
-        raise _out_of_range()
+        raise out_of_range()
 
     def ran(self, c: Colset) -> Value:
         """A value at random; raises CPN'Error for a colour set without bounds."""
-        if _is_numbered(c):
+        if is_numbered(c):
             return self.col(c, self.evaluator.random.below(self.size(c)))
         everything = self.all(c)
         if not everything:
-            raise _out_of_range()
+            raise out_of_range()
         return everything[self.evaluator.random.below(len(everything))]
 
     def base(self, c: Colset) -> Value:
@@ -368,14 +314,14 @@ class Colours:
         restricted = self._restricted.get(id(c))
         if restricted is None:
             self._kept.append(c)  # its id stays its own
-            restricted = self._restricted[id(c)] = _has_bounds(c)
+            restricted = self._restricted[id(c)] = has_bounds(c)
         if not restricted:
             return True
         match c.kind:
             case Kind.INT | Kind.INTINF | Kind.TIME | Kind.REAL:
-                return _within(c, value)
+                return is_within(c, value)
             case Kind.INDEX:
-                return _within(c, value.argument)
+                return is_within(c, value.argument)
             case Kind.STRING:
                 low, high = c.low, c.high
                 if isinstance(low, str) and not all(low <= x for x in value):
@@ -384,7 +330,7 @@ class Colours:
                     return False
                 return c.length is None or c.length[0] <= len(value) <= c.length[1]
             case Kind.LIST:
-                return _within(c, len(value)) and all(self.legal(component(c), x) for x in value)
+                return is_within(c, len(value)) and all(self.legal(component(c), x) for x in value)
             case Kind.PRODUCT | Kind.RECORD:
                 return all(self.legal(part, item) for _, part, item in parts_of(c, value))
             case Kind.UNION:
@@ -537,61 +483,6 @@ class Colours:
                 return Data(value.name, value.tag, inner)
             case _:
                 return value  # type: ignore[no-any-return]
-
-
-def _numbers(c: Colset) -> range:
-    """The numbers of an int or index colour set; raises CPN'Error when it has no bounds."""
-    if not isinstance(c.low, int) or not isinstance(c.high, int):
-        raise _unbounded(c)
-    return range(c.low, c.high + 1)
-
-
-def _lengths(c: Colset) -> tuple[int, int]:
-    """The lengths of a list or string; raises CPN'Error when it has no bounds."""
-    if c.kind is Kind.LIST and isinstance(c.low, int) and isinstance(c.high, int):
-        return c.low, c.high
-    if c.kind is Kind.STRING and c.length is not None and isinstance(c.low, str):
-        return c.length
-    raise _unbounded(c)
-
-
-def _sequences(items: int, low: int, high: int) -> int:
-    """How many sequences there are with `low` to `high - 1` of so many items."""
-    return sum(items**n for n in range(low, high))
-
-
-def _is_numbered(c: Colset) -> bool:
-    """Whether each number below the size is that of a value: no list, string or subset is in it."""
-    if c.kind in (Kind.LIST, Kind.STRING, Kind.SUBSET):
-        return False
-    return all(part is None or _is_numbered(part) for part in c.components)
-
-
-def _enough(c: Colset, size: int) -> None:
-    if size > MOST_VALUES:
-        raise MlLimit(f"the colour set {c.name} has more than {MOST_VALUES} values")
-
-
-def _has_bounds(c: Colset) -> bool:
-    """Whether some value of the colour set's type is not legal."""
-    own = c.low is not None or c.high is not None or c.length is not None
-    return (
-        own or c.kind is Kind.SUBSET or any(_has_bounds(p) for p in c.components if p is not None)
-    )
-
-
-def _within(c: Colset, number: Any) -> bool:
-    low: Any = c.low
-    high: Any = c.high
-    return (low is None or low <= number) and (high is None or number <= high)
-
-
-def _unbounded(c: Colset) -> MlException:
-    return MlException(exception("CPN'Error", f"the colour set {c.name} has no bounds"))
-
-
-def _out_of_range() -> MlException:
-    return MlException(exception("CPN'Error", "Out of range!"))
 
 
 _NO_EVALUATOR: Any = None

@@ -17,7 +17,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import MOST_COLOURS
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.values.colours import component, parts_of
+from pn2code.semantics.values.colour_components import component, parts_of
 from pn2code.semantics.values.data import Value
 from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.net import UnfoldedTransition, Unfolding

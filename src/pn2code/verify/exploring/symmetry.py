@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.semantics.values.colours import assemble, component, parts_of
+from pn2code.semantics.values.colour_components import assemble, component, parts_of
 from pn2code.semantics.values.data import Data, Value
 from pn2code.unfold.net import UnfoldedTransition, Unfolding
 

@@ -20,7 +20,8 @@ from pn2code.verify.answers.outcome import Counts, header
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import Control
-from pn2code.verify.exploring.result import Exploration, Graph, cut
+from pn2code.verify.exploring.result import Exploration, Graph
+from pn2code.verify.exploring.result_rows import cut
 from pn2code.verify.report import control_text, properties_text
 
 _RULE = "-" * 72

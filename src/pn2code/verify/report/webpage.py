@@ -29,7 +29,8 @@ from pn2code.verify.answers.path import Step, steps
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
-from pn2code.verify.exploring.result import Exploration, Trace, cut
+from pn2code.verify.exploring.result import Exploration, Trace
+from pn2code.verify.exploring.result_rows import cut
 from pn2code.verify.report import control_text, html, properties_text
 from pn2code.verify.report.text import bounded_places, left_out
 
