@@ -12,6 +12,7 @@ import typer
 from pn2code.base.deadline import Deadline
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
+from pn2code.base.so_far import SoFar
 from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import Exit, Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics
@@ -49,12 +50,26 @@ def check_geometry(
         opened = open_net(path, values, form, int_bits=int_bits, warnings=d, inputs=inputs)
     folder = traces or Path(f"{opened.flat.name}.geometry")
     is_new = not folder.exists()
+    so_far = SoFar()
     deadline = Deadline.of_command(None)
     limits = Limits(max_states=max_states, deadline=deadline, threads=jobs or cores())
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
-        with in_time(max_seconds, path, late, form), playing(form), line as progress:
-            found = examine(opened, layout, limits, folder, d, progress.stage, progress.say)
+        with (
+            in_time(max_seconds, path, late, form, so_far.words),
+            playing(form),
+            line as progress,
+        ):
+
+            def stage(text: str) -> None:
+                so_far.stage(text)
+                progress.stage(text)
+
+            def say(text: str) -> None:
+                so_far.say(text)
+                progress.say(text)
+
+            found = examine(opened, layout, limits, folder, d, stage, say)
         if found is None or d.has_errors:
             stop(d, form)
         if pictures:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -72,12 +72,17 @@ def refuse_wide(config: CellConfig | None, int_bits: int) -> None:
 
 @contextmanager
 def in_time(
-    seconds: float | None, net: Path, what: str, form: Format = Format.FULL
+    seconds: float | None,
+    net: Path,
+    what: str,
+    form: Format = Format.FULL,
+    so_far: Callable[[], str] = str,
 ) -> Iterator[None]:
     """What takes longer from the start of the command on ends it with a warning; None: there is no limit.
 
     Args:
         what: was not done then: `the marking was computed`.
+        so_far: what was done until then, behind it.
     """
     from pn2code.verify.codes import TIME_OVER
 
@@ -87,7 +92,9 @@ def in_time(
     except CommandIsOverError:
         d = Diagnostics()
         hint = "give it more time with `--max-seconds`"
-        d.warning(TIME_OVER, f"the time was up before {what}", Origin(str(net)), hint=hint)
+        d.warning(
+            TIME_OVER, f"the time was up before {what}{so_far()}", Origin(str(net)), hint=hint
+        )
         print_diagnostics(d.sorted(), form)
         raise typer.Exit(Exit.INCONCLUSIVE) from None
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.clearance_words import figure
 from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
 from pn2code.dossier.geometry import Table, answered, tables
@@ -272,7 +273,7 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [
-        Finding(f"least clearance, {name}", NOTED, f"{row['m'] * 1000:.1f} mm at {row['t']:.2f} s")
+        Finding(f"least clearance, {name}", NOTED, figure(row))
         for name, row in _rows(said, "clearances")
     ]
     found += [

@@ -54,6 +54,7 @@ class Standing:
 
     def __init__(self, part: Part, box: tuple[Array, Array]) -> None:
         link = Link.of(part.name, 0, part.frame, *box)
+        self.parts = (part,)
         self.names = {part.name: 0}
         self.radii = np.array([link.radius])
         never = np.zeros(1, bool)

@@ -119,7 +119,8 @@ def examine(
 
     def part(order: Order, shuffle: int) -> CellGraph | None:
         most = min(limits.max_states or MOST_OF_PART, MOST_OF_PART)
-        stage(f"exploring {most:,} states of the cell ...")
+        way = "breadth first" if order is Order.BREADTH else f"depth first, order {shuffle + 1}"
+        stage(f"exploring a part of {most:,} states of the cell, {way} ...")
         some = replace(limits, max_states=most, order=order)
         return explore_cell(
             partition,
@@ -142,6 +143,8 @@ def examine(
     options = Options(folder, stem, opened.initial, explore, stage, limits.threads, say)
     found = []
     for name, cell in cells:
+        if len(cells) > 1:
+            stage(f"layout `{name}` ...")
         looking = Look(graph, cell, options, name)
         try:
             layout_: Layout | None

@@ -28,6 +28,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
+from pn2code.robot.gripped import PATHS
 from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags
 
@@ -92,7 +93,7 @@ class Sweeper:
             found = self._backend.distances.pairs("robots", a.robot, limit, b.robot, near=near)
             return [
                 replace(x, allowed=None)
-                if not turning.isdisjoint(x.plates)
+                if not turning.isdisjoint(x.plates) or self._is_by_the_way(x.a, x.b, a, b)
                 else replace(x, stands=True)
                 if free and free <= calm.intersection(x.rides)
                 else x
@@ -104,28 +105,53 @@ class Sweeper:
     def _skipped(self, a: Track, b: Track, *, is_free: bool) -> Flags:
         """Links that may touch, (links of a, links of b)."""
         may = self._backend.distances.allowed
-        rows = [[not is_free and may(x, y) is not None for y in b.names] for x in a.names]
+        rows = [
+            [
+                not is_free and may(x, y) is not None and not self._is_by_the_way(x, y, a, b)
+                for y in b.names
+            ]
+            for x in a.names
+        ]
         return np.array(rows)
+
+    def _is_by_the_way(self, one: str, two: str, *near: Track | Standing) -> bool:
+        """Whether a tool that grips parts must keep apart from this one, to which its move does not lead."""
+        grip = self._backend.distances.grips.between(one, two)
+        if grip is None:
+            return False
+        robot, name = grip
+        track = next(x for x in near if isinstance(x, Track) and x.robot == robot)
+        if track.leg.kind not in PATHS:
+            return False
+        other, part = next((x, p) for x in near for p in x.parts if p.name == name)
+        # What stands on a plate that moves may be touched by nobody else, so it stands where it was.
+        frame = other.place(part) if isinstance(other, Track) else part.frame
+        return not track.ends.is_at(part, frame, ROUNDING)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands; where they touch, the first overlap that is met."""
-        return self._search(
-            a, Standing(part, box), self._of_part(a, part), is_free=a.leg.kind == "ptp"
-        )
+        stands = Standing(part, box)
+        return self._search(a, stands, self._of_part(a, stands), is_free=a.leg.kind == "ptp")
 
     def deepest_beside(self, a: Track, part: Part, box: tuple[Array, Array], touch: Apart) -> Apart:
         """How deep a leg and a part overlap that touch, where they do so most."""
         is_free = a.leg.kind == "ptp"
-        return deepest(Two(a, Standing(part, box), self._of_part(a, part), is_free, self), touch)
+        stands = Standing(part, box)
+        return deepest(Two(a, stands, self._of_part(a, stands), is_free, self), touch)
 
-    def _of_part(self, a: Track, part: Part) -> Measure:
+    def _of_part(self, a: Track, stands: Standing) -> Measure:
+        (part,) = stands.parts
         self._show((part, *a.parts))
 
         def measure(q_a: Array, _q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
-            return self._backend.distances.pairs(
+            found = self._backend.distances.pairs(
                 "scene", a.robot, limit, only={part.name}, near=near
             )
+            return [
+                replace(x, allowed=None) if self._is_by_the_way(x.a, x.b, a, stands) else x
+                for x in found
+            ]
 
         return measure
 
@@ -249,6 +275,8 @@ class Sweeper:
             lowest = max(best, 0.0) + ROUNDING
             for gap in found:
                 allowed = gap.permitted(is_free=a.leg.kind == "ptp")
+                if allowed is not None and self._is_by_the_way(gap.a, gap.b, a):
+                    allowed = None
                 slack = gap.distance if allowed is None else gap.distance + allowed
                 spread = spread_of(gap.a, a, knots.spread[0])
                 if kind == "self":

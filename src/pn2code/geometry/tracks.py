@@ -23,7 +23,8 @@ from pn2code.geometry.lines import Follower
 from pn2code.robot.active_motion import turned_by
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.part import Part
+from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.part import Part, carried_to
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Still
@@ -155,6 +156,7 @@ class Track:
         self._kept: list[Knots] = []
         self._follower: Follower | None = None
         self._is_lost = False
+        self._both: MoveEnds | None = None
         self.is_still = isinstance(leg.path, Still) or (
             isinstance(leg.path, JointTrajectory) and not np.any(leg.path.turns)
         )
@@ -177,6 +179,18 @@ class Track:
         """Its turntables, or belts and other axes of a device, that move meanwhile."""
         assert self.leg.path is not None
         return turned_by(self.shape.robot, self.leg.path)
+
+    @property
+    def ends(self) -> MoveEnds:
+        """Both ends of the leg, with the tool in use; they are worked out once."""
+        if self._both is None:
+            assert self.leg.path is not None
+            self._both = MoveEnds.of(self.shape.robot, self.leg.start.tool, self.leg.path)
+        return self._both
+
+    def place(self, part: Part) -> Array:
+        """`T_world_part` of a part that it carries, where the leg begins."""
+        return carried_to(self.shape.robot, self.leg.start.q, part)
 
     @property
     def trouble(self) -> str:

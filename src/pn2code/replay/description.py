@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.clearance_words import figure
 from pn2code.base.conditioning import condition_text
 from pn2code.base.os_reason import os_reason
 
@@ -126,7 +127,7 @@ def facts(summary: Mapping[str, Any]) -> list[list[str]]:
     ]
     rows += [[label, str(number)] for label, number in summary["counts"].items()]
     rows += [
-        [f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm"]
+        [f"least clearance, {name}", figure(entry, is_timed=False)]
         for name, entry in summary["clearances"].items()
     ]
     rows += [

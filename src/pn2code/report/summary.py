@@ -12,6 +12,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from pn2code.base.clearance_words import figure
 from pn2code.base.conditioning import condition_text
 from pn2code.cell.config import ReportConfig
 from pn2code.report.activities import activities, busy_seconds
@@ -83,7 +84,7 @@ def summarise(
         "counts": summary_counts(record, dict(report.count), occurrences),
         "activities": totals,
         "robots": per_robot,
-        "clearances": _minima(record),
+        "clearances": minima(record),
         "conditioning": _conditioning(record, robots, dict(report.count)),
         "accuracy": record.accuracy,
         "pictures": record.pictures,
@@ -131,17 +132,19 @@ def _on(change: dict[str, Any]) -> str:
     return f" on {' and '.join(change['on'])}" if "on" in change else ""
 
 
-def _minima(record: RunRecord) -> dict[str, Any]:
+def minima(record: RunRecord) -> dict[str, Any]:
+    """The least clearances: how much (m), when, and between which two things."""
     out: dict[str, Any] = {}
     for name in sorted(record.series):
         if not name.startswith("clearance."):
             continue
         values = record.array(name)
         if values.size and np.isfinite(values).any():
-            i = int(np.nanargmin(values))
+            i, least = int(np.nanargmin(values)), record.least.get(name)
             out[name.removeprefix("clearance.")] = {
                 "m": round(float(values[i]), 9),
                 "t": round(record.sample_t[i], 6),
+                **({"between": [least.a, least.b]} if least is not None else {}),
             }
     return out
 
@@ -211,9 +214,7 @@ def page(summary: dict[str, Any]) -> RenderableType:
     for label, number in summary["counts"].items():
         facts.add_row(label, str(number))
     for name, entry in summary["clearances"].items():
-        facts.add_row(
-            f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm at {entry['t']:.2f} s"
-        )
+        facts.add_row(f"least clearance, {name}", figure(entry))
     for robot, entry in summary["conditioning"].items():
         facts.add_row(
             f"condition number, {robot}",

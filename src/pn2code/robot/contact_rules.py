@@ -51,7 +51,7 @@ def gripping(
     belts: list[str],
 ) -> list[ContactRule]:
     """The tools' contact links may touch parts, and parts that are carried what they are taken from and put on."""
-    tips = [f"{r.name}/tool_{x}" for r in robots if r.tool for x in r.tool.contact_links]
+    tips = [(f"{r.name}/tool_{x}", r) for r in robots if r.tool for x in r.tool.contact_links]
     things = [
         "floor",
         "panel/*",
@@ -64,7 +64,10 @@ def gripping(
         rule
         for kind in kinds
         for rule in (
-            *(ContactRule(tip, f"{kind}.*", PART_CONTACT) for tip in tips),
+            *(
+                ContactRule(tip, f"{kind}.*", PART_CONTACT, grips=kind in robot.carries)
+                for tip, robot in tips
+            ),
             *(ContactRule(f"*/{kind}.*", thing, PART_CONTACT) for thing in things),
         )
     ]

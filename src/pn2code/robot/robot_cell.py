@@ -88,11 +88,16 @@ class PanelConfig:
 
 @frozen
 class ContactRule:
-    """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m)."""
+    """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m).
+
+    Args:
+        grips: `a` is of a tool that grips parts of the kind `b`: it may touch only the one to which a move leads.
+    """
 
     a: str
     b: str
     depth: float
+    grips: bool = False
 
 
 @frozen(eq=False)

@@ -24,8 +24,10 @@ def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iter
                 yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
             held = f"{robot.name}/{name}"
             gripped = [f"{k}.*" for k in kind.takes] if kind.tool.contact_links else []
-            for other in (*map(glob.escape, kind.holders), *gripped):
+            for other in map(glob.escape, kind.holders):
                 yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
+            for part in gripped:
+                yield from also_of_tools(ContactRule(held, part, PART_CONTACT, grips=True), tools)
 
 
 def end_links(robot: CellRobot) -> Iterator[str]:

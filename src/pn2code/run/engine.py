@@ -534,7 +534,7 @@ class Engine:
         }
         calm = [name for name, plates in turns.items() if not plates]
         turning = frozenset[str]().union(*turns.values())
-        verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning)
+        verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning, self._leads_to)
         self.record.sample(verdict)
         for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
@@ -549,6 +549,11 @@ class Engine:
             self.now = t
             raise CellStoppedError(f"{why}; {self._doing()}")
         self._expect_slow(t, joints)
+
+    def _leads_to(self, robot: str, part: str) -> bool:
+        """Whether the line or arc that a robot is on leads to a part, or away from it."""
+        runner = next(r for r in self.robots if r.name == robot)
+        return self.around.leads_to(runner, part)
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""

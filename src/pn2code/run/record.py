@@ -161,6 +161,8 @@ class RunRecord:
     """what has stopped the cell, when that was a zone"""
     near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
+    least: dict[str, Clearance] = field(default_factory=dict)
+    """of each series of clearances the nearest two things, where they were nearest first"""
     gaps: list[tuple[float, Clearance]] = field(default_factory=list)
     """which parts are closer than `NEAR` from when on, until the next note of the pair; `APART` ends it"""
     _standing: dict[tuple[str, str], Clearance] = field(default_factory=dict)
@@ -174,6 +176,8 @@ class RunRecord:
             if gap.counts:
                 name = f"clearance.{gap.kind}" + ("" if gap.kind == "robots" else f".{gap.robot}")
                 nearest[name] = min(nearest.get(name, np.inf), gap.distance)
+                if name not in self.least or gap.distance < self.least[name].distance:
+                    self.least[name] = gap
         if verdict.clearances is not None:
             names = ["clearance.robots"]
             names += [f"clearance.{k}.{s.robot}" for s in arms for k in ("scene", "self")]

@@ -29,6 +29,7 @@ from pn2code.robot.clamps import (
     taken_along,
 )
 from pn2code.robot.commands import Command, Handling, Move, MoveExternal
+from pn2code.robot.gripped import MoveEnds
 from pn2code.robot.part import PartChange, PartFault
 from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
@@ -50,6 +51,7 @@ class Surroundings:
     robots: Sequence[RobotRunner]
     _keeper: PartKeeper = field(init=False)
     _zones: ZoneWatch = field(init=False)
+    _ends: dict[str, tuple[Motion, MoveEnds]] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         """The parts of the start; nothing is shown yet."""
@@ -123,6 +125,15 @@ class Surroundings:
                 self.parts.turn(plate, belts if plate in belts else frozenset())
             except PartFault as fault:
                 raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
+
+    def leads_to(self, robot: RobotRunner, part: str) -> bool:
+        """Whether the move that is under way begins or ends where a part is gripped."""
+        motion, own = robot.motion, self.parts.present[part]
+        assert motion is not None and robot.arm is not None, "an arm moves"
+        if robot.name not in self._ends or self._ends[robot.name][0] is not motion:
+            arm = robot.arm
+            self._ends[robot.name] = motion, MoveEnds.of(arm.robot, arm.tool, motion.trajectory)
+        return self._ends[robot.name][1].is_at(own, self.parts.world(own))
 
     # --- a motion has ended --------------------------------------------------------------------
 

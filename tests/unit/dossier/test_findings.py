@@ -83,7 +83,10 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
         "reason": "",
         "final": ["Cell.Supervisor.Failed"],
         "cycle_seconds": 7.0,
-        "clearances": {"robots": {"m": 0.0123, "t": 1.5}},
+        "clearances": {
+            "robots": {"m": 0.0123, "t": 1.5},
+            "scene.r": {"m": 0.0045, "t": 1.0, "between": ["r/link_4", "post"]},
+        },
         "conditioning": {"r": {"worst": 102.1, "t": 2.0}, "s": {"worst": 8.6e18, "t": 3.0}},
         "warnings": [{"t": 2.0, "robot": "r", "text": "comes close to a singularity"}],
     }
@@ -93,6 +96,7 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
     assert [(f.answer, f.says) for f in c.findings] == [
         (YES, "finished in Cell.Supervisor.Failed"),
         (NOTED, "12.3 mm at 1.50 s"),
+        (NOTED, "4.5 mm at 1.00 s, `r/link_4` and `post`"),
         (NOTED, "102.1 at 2.00 s"),
         (NOTED, "above 1,000,000 at 3.00 s"),
         (NOTED, "r comes close to a singularity"),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import riveting_cell
+from pn2code.report.summary import minima
 from pn2code.robot.active_motion import MotionKind
 from pn2code.robot.backend import Clearance
 from pn2code.robot.fake import FakeBackend
@@ -78,6 +79,15 @@ def test_what_may_be_touched_on_lines_counts_on_joint_moves(
     assert run.least(figure) == gap.distance
     assert run.least("scene.robot1") == min(g.distance for g in (gap, POST) if g.kind == "scene")
     assert (gap.a, gap.b) in {(g.a, g.b) for _, g in run.record.gaps}
+
+
+def test_a_figure_names_the_two_that_are_nearest(run: Watched) -> None:
+    """Those of the least distance, though others are near before and after."""
+    for near in (POST, STANDING, POST):
+        run.see({"robot1": "ptp"}, near)
+    assert minima(run.record) == {
+        "scene.robot1": {"m": 0.0083, "t": 0.02, "between": ["robot1/tool_tip", "bar.1"]}
+    }
 
 
 @pytest.mark.parametrize("kind", ["lin", "tool", None])
