@@ -12,7 +12,7 @@ from helpers import small_cell
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.verify.controller import control, proofs
-from pn2code.verify.exploring import explore
+from pn2code.verify.exploring import explore, explorer_process
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -26,7 +26,7 @@ def test_no_clock_is_looked_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         return popen(command, *rest, **options)
 
     small_cell.write(tmp_path)
-    monkeypatch.setattr(explore.subprocess, "Popen", noted)
+    monkeypatch.setattr(explorer_process.subprocess, "Popen", noted)
     d = Diagnostics()
     assert pipeline.generate(tmp_path, d) is not None, render.report(d)
     assert "--max-states" in asked

@@ -16,6 +16,7 @@ from helpers.netbuilder import cpn
 from helpers.thorough import THOROUGH
 from pn2code.cli import verify as command
 from pn2code.cli.main import app
+from pn2code.verify.controller import by_turns, control
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -94,6 +95,29 @@ def test_conditions_on_states_are_asked_in_turns(
             assert row["evidence"]["confirmed"] and row["rests_on"] in ("part", "run")
     by_name = {row["holds"]: row for row in found["properties"]}
     assert any("in turns" in x for x in by_name[PROPERTIES[0][0]]["assumes"])
+
+
+def test_runs_of_turns_have_files_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The questions that are asked in turns have other numbers than those of the whole, whose runs stay."""
+    cell = write(tmp_path / "cell", 2)
+    monkeypatch.setattr(command, "TURNS_FROM", 200)
+    monkeypatch.setattr(command, "COUNTS_FROM", None)
+    stems: dict[str, set[str]] = {"whole": set(), "turns": set()}
+    for name, module in (("whole", control), ("turns", by_turns)):
+
+        def noted(*given: Any, name: str = name, explore: Any = module.explore) -> Any:
+            stems[name].add(given[-1].stem)
+            return explore(*given)
+
+        monkeypatch.setattr(module, "explore", noted)
+    asks = ("bound 1 <= Supervisor'Feeding <= 1", PROPERTIES[3][0], PROPERTIES[6][0])
+    asked = [word for text in asks for word in ("--property", text)]
+    found = verified(cell, *asked, "--no-medium")
+    shown = [(p["answer"], p["evidence"]["confirmed"]) for p in found["properties"]]
+    assert shown == [("no", True)] * len(asks)
+    assert stems["turns"] and stems["whole"].isdisjoint(stems["turns"])
 
 
 CELL = """[net]
