@@ -84,7 +84,8 @@ export class Beside {
     }
     const ends = [this.page.run, this.run].flatMap((run, i) => {
       const chip = chipOf(run);
-      return chip ? [el("span", { class: `which ${"AB"[i]}`, title: this.names[i], text: "AB"[i] }), " ", chip, " "] : [];
+      const which = el("span", { class: `which ${"AB"[i]}`, title: this.names[i], text: "AB"[i] });
+      return chip ? [el("span", { class: "ended" }, which, " ", chip), " "] : [];
     });
     byId("verdict").replaceChildren(...ends);
   }

@@ -930,6 +930,15 @@ def test_how_both_runs_have_ended_is_read_on_a_phone(tmp_path: Path, chromium: A
             assert (
                 head["y"] <= chip["y"] and chip["y"] + chip["height"] <= head["y"] + head["height"]
             )
+        # Each mark stands beside its chip, and the page that is shown of each net can be read.
+        boxes = browser.ask(
+            """() => [...document.querySelectorAll('#verdict .which, #verdict .chip')].map((e) => {
+                const box = e.getBoundingClientRect(); return [box.top, box.bottom, e.getClientRects().length]; })"""
+        )
+        for mark, chip in zip(boxes[::2], boxes[1::2], strict=True):
+            assert chip[2] == 1 and chip[0] <= (mark[0] + mark[1]) / 2 <= chip[1]
+        choosers = "() => [...document.querySelectorAll('#net select, #net-2 select')].map((s) => s.clientWidth)"
+        assert min(browser.ask(choosers)) > 90
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
         assert complaints(browser) == []
 

@@ -116,6 +116,7 @@ def test_a_run_says_where_it_is(root: Path, tmp_path: Path) -> None:
         first = talk.first["updates"][0]
     assert served.end() == 0
     assert first["verdict"]["word"] == "has not started"
+    assert f"the last run in {out} has ended" in first["verdict"]["reason"]
     journal = (out / "robots.trace.jsonl").read_text(encoding="utf-8")
     assert journal.count('"Cell.Robot.Report"') == 3 and '"event": "arm"' in journal
     assert '"why": "finished"' in journal

@@ -161,7 +161,7 @@ def _where(directory: Path, traces: tuple[Path, ...]) -> Where:
     except (OSError, ValueError, KeyError, TypeError):
         return Where(directory, traces, directory)
     own = (directory / "supervisor.trace.jsonl", directory / "robots.trace.jsonl")
-    return Where(shared, (*own, *traces))
+    return Where(shared, (*own, *traces), run=directory)
 
 
 def _cell(

@@ -27,17 +27,24 @@ LOOK_S = 0.1
 """Between two looks at states and traces; at the files whenever one changes."""
 _BEFORE_S = 0.02
 """Between two looks for a session that begins."""
+SUMMARY, REPLAY_PAGE = "summary.json", "replay.html"
+"""What a run leaves in its folder when it has ended."""
 LAST_S = 0.6
 """So long after the supervisor's last word traces and the other sides may say theirs."""
 
 
 @frozen
 class Where:
-    """Where a cell runs: its shared folder, and its traces; `folder` whose traces count as well."""
+    """Where a cell runs: its shared folder, and its traces; `folder` whose traces count as well.
+
+    Args:
+        run: where the results of a `pn2code run` go, if it is one.
+    """
 
     shared: Path
     traces: tuple[Path, ...] = ()
     folder: Path | None = None
+    run: Path | None = None
 
 
 class Watching:
@@ -201,6 +208,12 @@ def _verdict(watched: Watched, seen: Seen, state: Life) -> Json:
 
 def _why(where: Where, seen: Seen) -> str:
     """Why there is nothing to be seen."""
+    if not seen.is_there and where.run is not None and (where.run / SUMMARY).exists():
+        page = where.run / REPLAY_PAGE
+        there = f"what it did is in {page}" if page.exists() else "its shared files are gone"
+        return (
+            f"the last run in {where.run} has ended, and {there}; the next one is shown by itself"
+        )
     if not seen.is_there:
         return f"the folder {where.shared} does not exist yet; the page goes on by itself"
     return f"no supervisor has announced itself in {where.shared}; the page goes on by itself"
