@@ -11,6 +11,9 @@ const LIT_S = 0.4;
 const STAY_MS = 700;
 /** Where texts of a whole page would be smaller (CSS pixels), what occurs is shown with its surroundings, this large. */
 const LEAST_TEXT = 5;
+/** The same where a screen is as small as a phone's, which is held nearer, but not nearer than this needs. */
+const LEAST_ON_PHONE = 7;
+const PHONE = matchMedia("(max-width: 600px)");
 /** What is seen beside an element to which the window has moved. */
 const BESIDE = 12;
 const NEAR_TEXT = 9;
@@ -287,7 +290,7 @@ export class NetView {
     const { view: full } = this.shown();
     const [w, h] = [this.sheet.clientWidth, this.sheet.clientHeight];
     const { size } = this.net.style;
-    if (!w || !h || size * Math.min(w / full[2], h / full[3]) >= LEAST_TEXT) return;
+    if (!w || !h || size * Math.min(w / full[2], h / full[3]) >= (PHONE.matches ? LEAST_ON_PHONE : LEAST_TEXT)) return;
     const box = this.boxOf(occurred.id, "");
     if (!box) return;
     const shown = [(w * size) / NEAR_TEXT, (h * size) / NEAR_TEXT];
