@@ -26,9 +26,9 @@ from pn2code.geometry.apart import Apart, Found, Standing, spread_of
 from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, Own, gaps, near
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
+from pn2code.robot.active_motion import PATHS
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
-from pn2code.robot.gripped import PATHS
 from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags
 

@@ -18,6 +18,7 @@ from pn2code.live.seen import Eye, Life, Seen
 from pn2code.live.tails import Tails
 from pn2code.live.waking import Waking
 from pn2code.live.watched import Watched, WatchedCell, nothing_yet
+from pn2code.replay import page as replay_page
 
 Json = dict[str, Any]
 
@@ -27,8 +28,8 @@ LOOK_S = 0.1
 """Between two looks at states and traces; at the files whenever one changes."""
 _BEFORE_S = 0.02
 """Between two looks for a session that begins."""
-SUMMARY, REPLAY_PAGE = "summary.json", "replay.html"
-"""What a run leaves in its folder when it has ended."""
+SUMMARY = "summary.json"
+"""What each run leaves in its folder when it has ended."""
 LAST_S = 0.6
 """So long after the supervisor's last word traces and the other sides may say theirs."""
 
@@ -209,7 +210,7 @@ def _verdict(watched: Watched, seen: Seen, state: Life) -> Json:
 def _why(where: Where, seen: Seen) -> str:
     """Why there is nothing to be seen."""
     if not seen.is_there and where.run is not None and (where.run / SUMMARY).exists():
-        page = where.run / REPLAY_PAGE
+        page = where.run / replay_page.NAME
         there = f"what it did is in {page}" if page.exists() else "its shared files are gone"
         return (
             f"the last run in {where.run} has ended, and {there}; the next one is shown by itself"

@@ -18,6 +18,8 @@ from pn2code.robot.transforms import Array
 _MOVED: WeakKeyDictionary[Trajectory, Array] = WeakKeyDictionary()
 """What `moved` has worked out."""
 MotionKind = Literal["ptp", "lin", "circ", "blend", "axis", "tool", "measure", "wait"]
+PATHS: frozenset[MotionKind] = frozenset({"lin", "circ", "blend"})
+"""Those that lead a TCP along a path: to a part, and away from it."""
 _STILL = 1e-9  # rad: a turntable that turns by less stands
 
 

@@ -17,7 +17,6 @@ import fnmatch
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.active_motion import MotionKind
 from pn2code.robot.hulls import Hull
 from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
@@ -25,8 +24,6 @@ from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, RobotCell
 from pn2code.robot.trajectories import Trajectory
 from pn2code.robot.transforms import Array, difference, inverse, matrix_of
 
-PATHS: frozenset[MotionKind] = frozenset({"lin", "circ", "blend"})
-"""What leads a tool to a part and away from it."""
 BEYOND = 0.03
 """m: so far beyond its ends a move leads to a part, too: the rest of the way is another line."""
 _NEAR_END = 0.01

@@ -18,11 +18,11 @@ from typing import Literal
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.active_motion import MotionKind
+from pn2code.robot.active_motion import PATHS, MotionKind
 from pn2code.robot.backend import Backend, Clearance, closest
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
-from pn2code.robot.gripped import PATHS, GripContacts
+from pn2code.robot.gripped import GripContacts
 from pn2code.robot.kinematics import Conditioning
 from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
@@ -161,7 +161,7 @@ class Monitor:
         poses = {s.robot: s.pose for s in samples}
         fault: Fault | None = None
         for s in samples:
-            fault = fault or self._own_fault(s, t, kinds.get(s.robot) in ("lin", "circ", "blend"))
+            fault = fault or self._own_fault(s, t, kinds.get(s.robot) in PATHS)
             if s.robot in self._devices:
                 continue
             c = s.conditioning

@@ -16,6 +16,7 @@ from pn2code.geometry.look import Look, Options, touch_in_words
 from pn2code.geometry.placing.search import Wish
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import words
+from pn2code.robot.active_motion import PATHS
 from pn2code.robot.robot_cell import RobotCell
 
 
@@ -70,7 +71,7 @@ def _trouble(looking: Look, robots: Collection[str]) -> str:
 def proof_of(layout: Layout, wish: Wish, robots: Collection[str]) -> Proof:
     """What the whole check says about a wish."""
     moves = [m for m in layout.moves if m.robot in robots]
-    led = [m for m in moves if m.kind in ("lin", "circ", "blend")] or moves
+    led = [m for m in moves if m.kind in PATHS] or moves
     condition = max((math.inf if m.condition is None else m.condition for m in led), default=1.0)
     limit = min((math.radians(m.limit) for m in led if m.limit is not None), default=math.inf)
     clearance = min((-math.inf if m.scene is None else m.scene for m in moves), default=math.inf)
