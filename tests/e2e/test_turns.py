@@ -104,12 +104,13 @@ def test_runs_of_turns_have_files_of_their_own(
     cell = write(tmp_path / "cell", 2)
     monkeypatch.setattr(command, "TURNS_FROM", 200)
     monkeypatch.setattr(command, "COUNTS_FROM", None)
-    stems: dict[str, set[str]] = {"whole": set(), "turns": set()}
+    files: dict[str, set[str]] = {"whole": set(), "turns": set()}
     for name, module in (("whole", control), ("turns", by_turns)):
 
         def noted(*given: Any, name: str = name, explore: Any = module.explore) -> Any:
-            stems[name].add(given[-1].stem)
-            return explore(*given)
+            seen = explore(*given)
+            files[name].update(a["trace"] for a in (seen.answers if seen else ()) if a["trace"])
+            return seen
 
         monkeypatch.setattr(module, "explore", noted)
     asks = ("bound 1 <= Supervisor'Feeding <= 1", PROPERTIES[3][0], PROPERTIES[6][0])
@@ -117,7 +118,7 @@ def test_runs_of_turns_have_files_of_their_own(
     found = verified(cell, *asked, "--no-medium")
     shown = [(p["answer"], p["evidence"]["confirmed"]) for p in found["properties"]]
     assert shown == [("no", True)] * len(asks)
-    assert stems["turns"] and stems["whole"].isdisjoint(stems["turns"])
+    assert files["turns"] and files["whole"] and files["whole"].isdisjoint(files["turns"])
 
 
 CELL = """[net]

@@ -236,7 +236,6 @@ def look(
         return None
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
-    options = _apart(options)
     control: Control | None = None
     if cell is not None and asks_control:
         options.stage("exploring the cell as its programs run ...")
@@ -254,16 +253,6 @@ def look(
     if not is_cell or (soon.orders is not None and soon.orders.why == "seconds"):
         soon = other_orders.look(opened, found, limits, options)
     return Looked(soon, control, more, seen)
-
-
-def _apart(options: ExploreOptions) -> ExploreOptions:
-    """The same with a folder of its own for the runs of what is explored besides, however the net is called."""
-    if options.evidence is None:
-        return options
-    folder = options.evidence / "besides"
-    with suppress(OSError):  # that runs cannot be written will be said of each
-        folder.mkdir(exist_ok=True)
-    return replace(options, evidence=folder)
 
 
 def _open_channels(cell: Partition, sizes: Sizes) -> frozenset[int]:

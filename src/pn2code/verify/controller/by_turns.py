@@ -151,7 +151,6 @@ def look(
         sizes=Sizes.start(running.net, plan.storage),
         generated=Generated(),
         quick=False,
-        stem="turns",  # what was seen of the whole before has its runs under another name
     )
     found = _explored(running.net, plan, limits, d, replace(own, questions=cell))
     if found is None or not all_good(found.answers, cell, properties):
@@ -160,7 +159,7 @@ def look(
     found = replace(found, answers=tuple(found.answers[properties:]))
     if is_choiceless(found):
         return Looked(running, found, None, told)
-    own = replace(own, questions=orders, stem="turns.orders")
+    own = replace(own, questions=orders, stem="orders")
     other = _explored(running.net, plan, limits, d, own)
     if other is None or not all_good(other.answers, orders):
         return None

@@ -7,6 +7,7 @@ found.nodes, found.complete
 from __future__ import annotations
 
 import os
+import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
@@ -91,7 +92,7 @@ class ExploreOptions:
             written of the first nodes, 200,000 at most; with `cut` at those of which arcs are missing.
         colours: of each multi-set bound at most so many colours are told; None: all. `whole`: places of which all are.
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
-            that they mention. `evidence`: a folder for the runs that show the answers.
+            that they mention. `evidence`: a folder, that goes with all in it, for the runs that show answers.
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
@@ -218,6 +219,7 @@ def _explored(
 ) -> Exploration | None:
     deadline = limits.deadline
     began = time.perf_counter()
+    options = _with_own_folder(options)
     try:
         with deadline.enforced():
             if nondeterminism.refuse(net, d):
@@ -348,6 +350,17 @@ def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) ->
             hint="give it more time with `--max-seconds`; a net that has been compiled once is kept",
         )
     return Exploration.of(net, nothing(net, limits, "seconds"), compiling)
+
+
+def _with_own_folder(options: ExploreOptions) -> ExploreOptions:
+    """The same with a folder for the runs of this exploration; those of others, whose answers count still, stay."""
+    if options.evidence is None:
+        return options
+    try:
+        own = tempfile.mkdtemp(prefix=f"{options.stem}-", dir=options.evidence)
+    except OSError:  # the explorer will find out, and whoever wants the runs says so
+        return options
+    return replace(options, evidence=Path(own))
 
 
 def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOptions) -> list[str]:
