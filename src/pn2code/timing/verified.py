@@ -30,7 +30,7 @@ from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
 from pn2code.timing.own_work import by_own_work
 from pn2code.timing.search import TIE, Search
-from pn2code.timing.waits import Is, Wait, longest_wait, seen_wait
+from pn2code.timing.waits import Is, Wait, longest_wait, seen_wait, way_to
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
 from pn2code.verify.answers.properties import Answer, Evidence, Verdict
@@ -217,7 +217,8 @@ class _Judge:
     ) -> Answer | None:
         """With the run of a wait that is too long; of another one, if that run stops before; None: all of them do."""
         way = [wait.before, *(node for node, _ in wait.way[:-1])]
-        if one.search.stopped().isdisjoint(way):
+        is_reached = path_before(one.search, wait) is not None
+        if is_reached and one.search.stopped().isdisjoint(way):
             return self._shown(a, one, wait, "no", wait.ns)
         seen = waited_too_long(one.search, *events, limit)
         return None if seen is None else self._shown(a, one, seen, "no", None)
@@ -305,7 +306,9 @@ class _Judge:
     ) -> Answer:
         """With the run of the longest wait, or of one that has no end."""
         search = one.search
-        elements = [x for _, x in search.path_to(wait.before) if x >= 0]
+        path = path_before(search, wait)
+        assert path is not None, "what is shown is a run"
+        elements = [x for _, x in path if x >= 0]
         elements += [x for _, x in wait.way if x >= 0]
         name = run_names(p.name for p in self.asked.properties)[a.about.name]
         file = self.folder / f"{stem(self.opened)}.{name}.trace.jsonl"
@@ -320,6 +323,15 @@ class _Judge:
 def _stops(search: Search) -> list[str]:
     """Why a run may stop."""
     return [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
+
+
+def path_before(search: Search, wait: Wait) -> list[tuple[int, int]] | None:
+    """A way to where a wait begins (node and mark of each arc) on which no run stops; None: there is none."""
+    stopped = search.stopped()
+    if not stopped:
+        return search.path_to(wait.before)
+    arcs = [() if node in stopped else x for node, x in enumerate(search.successors)]
+    return way_to(arcs, {wait.before})
 
 
 def surely_waited(search: Search, wait: Wait, first: Is, second: Is) -> tuple[int, Wait]:

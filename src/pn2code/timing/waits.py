@@ -83,11 +83,11 @@ def longest_wait(
     never = [i for i in range(1, last) if not paths.leading[i]]
     lost = next((i for i in never if inside[i - 1] not in over), 0)
     if lost:
-        return told(_way(graph, {lost}), "never")
+        return told(_reached(graph, lost), "never")
     if never:
         return Wait(None, "ends")
     if paths.cycle:
-        there = _way(graph, {paths.cycle[0]})
+        there = _reached(graph, paths.cycle[0])
         return told([*there, *_round(graph, paths.cycle)], "repeats")
     found = paths.longest()
     assert found is not None
@@ -143,8 +143,8 @@ def _until(
     return tuple(found)
 
 
-def _way(graph: Sequence[Sequence[Arc]], goals: Collection[int]) -> list[tuple[int, int]]:
-    """A way with few arcs from node 0: node and mark of each."""
+def way_to(graph: Sequence[Sequence[Arc]], goals: Collection[int]) -> list[tuple[int, int]] | None:
+    """A way with few arcs from node 0: node and mark of each; None: there is none."""
     before: dict[int, tuple[int, int]] = {}
     todo = [0]
     for node in todo:
@@ -159,7 +159,13 @@ def _way(graph: Sequence[Sequence[Arc]], goals: Collection[int]) -> list[tuple[i
             if target and target not in before:
                 before[target] = (node, mark)
                 todo.append(target)
-    raise AssertionError("it is reached")
+    return None
+
+
+def _reached(graph: Sequence[Sequence[Arc]], node: int) -> list[tuple[int, int]]:
+    found = way_to(graph, {node})
+    assert found is not None, "it is reached"
+    return found
 
 
 def _round(graph: Sequence[Sequence[Arc]], cycle: Sequence[int]) -> list[tuple[int, int]]:

@@ -12,7 +12,13 @@ from pn2code.timing.answers import Cycle, Ending, between
 from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc
 from pn2code.timing.search import MOST, TIE, Search
-from pn2code.timing.verified import _Judge, seen_too_long, surely_waited, waited_too_long
+from pn2code.timing.verified import (
+    _Judge,
+    path_before,
+    seen_too_long,
+    surely_waited,
+    waited_too_long,
+)
 from pn2code.timing.waits import longest_wait
 
 MS = NS // 1000
@@ -179,3 +185,32 @@ def test_what_others_do_after_a_fault_is_no_run() -> None:
         assert (told == "shown") == is_real
         search.why = "situations"
         assert (seen_too_long(search, *events, 2 * NS) is not None) == is_real
+
+
+def test_a_wait_that_begins_behind_a_fault_is_no_run() -> None:
+    """Nor is the way to it that which goes through the fault, where there is another one."""
+    events = (lambda mark: mark == ASK), (lambda mark: mark == END)
+    shown: Any = SimpleNamespace(_shown=lambda *_: "shown")
+    behind: list[list[Arc]] = [
+        [(1, 5, WORK)],
+        [(2, 0, WORK)],
+        [(3, 1, ASK)],
+        [(4, 9 * NS, END)],
+        [],
+    ]
+    beside = [[(1, 5, WORK), (5, 1, WORK)], *behind[1:], [(2, 7, WORK)]]
+    for graph, path in ((behind, None), (beside, [(5, WORK), (2, WORK)])):
+        search: Any = SimpleNamespace(
+            successors=graph,
+            surely=lambda graph=graph: graph,
+            situations=[(i,) for i in range(len(graph))],
+            graph=SimpleNamespace(over=set()),
+            ends=set(),
+            stopped=lambda: {1},
+        )
+        wait = longest_wait(graph, *events, ())
+        assert (wait.ns, wait.before) == (9 * NS, 2)
+        assert path_before(search, wait) == path
+        one: Any = SimpleNamespace(search=search)
+        told: Any = _Judge._too_long(shown, cast(Any, None), one, wait, events, 2 * NS)
+        assert told == (None if path is None else "shown")
