@@ -30,9 +30,10 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.properties import answered
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.replies import Replies
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 

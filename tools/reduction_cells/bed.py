@@ -45,8 +45,9 @@ from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.controller import by_turns, control
 from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.controller.premises import Premises
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes

@@ -67,9 +67,10 @@ from pn2code.verify.controller.crowd import Crowd, crowd
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.hunts import hunt
 from pn2code.verify.controller.kept_silence import kept_silence
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.running import Running
 from pn2code.verify.controller.stated import Stated, ways
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore

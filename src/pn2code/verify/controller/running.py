@@ -52,6 +52,7 @@ from pn2code.net.predicate import Predicate
 from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.trace.parties import EVIDENCE, VERIFY
 from pn2code.verify.controller.moments import Moments
+from pn2code.verify.controller.not_modelled import NotModelledError, check_modelled
 from pn2code.verify.controller.poses import Bad
 from pn2code.verify.controller.refusals import refusing
 from pn2code.verify.controller.rival_transitions import meek
@@ -59,18 +60,12 @@ from pn2code.verify.controller.staged_channels import staged
 from pn2code.verify.controller.stops import NoProgramError, machine, waits
 from pn2code.verify.controller.unanswered import unanswered
 from pn2code.verify.controller.unsure import Conditions
-from pn2code.verify.exploring import time_reduction
 from pn2code.verify.exploring.elements import colours
 
-MOST_OWNERS = 250
 OWING = "has finished, but it owes an answer"
 """A step that stops the cell."""
 _WORDS = 200
 """Of a line."""
-
-
-class NotModelledError(Exception):
-    """The programs of a cell do something that this model does not have; the text is a clause that says what."""
 
 
 @frozen
@@ -169,7 +164,7 @@ class Running:
             NoPatternError: what such a move depends on cannot be compared.
             NotModelledError: not everything that its programs do can be said so.
         """
-        _check(partition, predicates)
+        check_modelled(partition, predicates)
         try:
             return _Composer(partition, moves, loose=loose).made()
         except NoProgramError as problem:
@@ -271,58 +266,6 @@ def chunks(head: str, numbers: Iterable[int]) -> Iterator[str]:
     words = [str(n) for n in numbers]
     for i in range(0, len(words), _WORDS):
         yield " ".join([head, *words[i : i + _WORDS]])
-
-
-# --- what is not modelled ------------------------------------------------------------------------
-
-
-def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
-    net = partition.net
-    if len(partition.owners) > MOST_OWNERS:
-        raise NotModelledError(f"the cell has more than {MOST_OWNERS} programs")
-    if net.timed:
-        why = time_reduction.why_not_reducible(net, predicates)
-        if why is not None:
-            raise NotModelledError(
-                f"steps may come later than in the net, and {why.message}, so that there would be infinitely many "
-                "states"
-            )
-    for place in partition.final_places:
-        if net.places[place].colset.timed:
-            raise NotModelledError(f"the final place `{net.places[place].name}` is timed")
-    channels = {c.place: c for c in partition.channels}
-    for t, owner in zip(net.transitions, partition.transition_owner, strict=True):
-        _check_transition(t, owner, channels, partition)
-
-
-def _check_transition(
-    t: FlatTransition, owner: int, channels: dict[int, Channel], partition: Partition
-) -> None:
-    taken: set[int] = set()
-    put: list[Channel] = []
-    for arc in t.arcs:
-        channel = channels.get(arc.place)
-        if channel is None:
-            if partition.place_owner[arc.place] not in (owner, None):
-                raise NotModelledError(f"`{t.name}` touches a place of another owner")
-            continue
-        name = channel.name
-        if arc.kind is ArcKind.OUTPUT and channel.writer == owner:
-            put.append(channel)
-        elif arc.kind is ArcKind.INPUT and channel.reader == owner:
-            if arc.place in taken or not arc.takes_one:
-                raise NotModelledError(
-                    f"the net does not show that `{t.name}` takes only one message of `{name}`"
-                )
-            taken.add(arc.place)
-        else:
-            raise NotModelledError(f"`{t.name}` does more with channel `{name}` than its direction")
-    if owner == SUPERVISOR:
-        return
-    for kind in ChannelKind:
-        readers = [c.reader for c in put if c.kind is kind]
-        if len(set(readers)) < len(readers):
-            raise NotModelledError(f"`{t.name}` writes two messages of one kind to the same reader")
 
 
 # --- the net -------------------------------------------------------------------------------------
