@@ -25,6 +25,7 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.trajectories import Still
 from pn2code.run.cell import _scripts, shared_directory
 from pn2code.run.device import DeviceExecutor
+from pn2code.run.doings import stuck
 from pn2code.run.engine import Engine
 from pn2code.run.files import RobotFiles
 from pn2code.run.record import RunRecord
@@ -187,7 +188,7 @@ class _Wanderer(Engine):
         if wake is not None and not self._finished and not self._is_held(SUPERVISOR):
             times.append(wake)
         if not times:
-            raise CellStoppedError(self._stuck())
+            raise CellStoppedError(stuck(self.robots, self.now))
         return max(self.now, min(times))
 
 

@@ -172,7 +172,7 @@ def run(
     from pn2code.report.album import Album
     from pn2code.run.alone import alone_in
     from pn2code.run.cell import RunOptions, run_cell
-    from pn2code.run.engine import Observer
+    from pn2code.run.observer import Observer
     from pn2code.run.progress import Progress
 
     if speed != 1.0 and not realtime:

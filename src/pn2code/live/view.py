@@ -49,7 +49,7 @@ def patience_of(reply_timeout_s: float) -> float:
 
 
 class LiveView(Closing):
-    """An observer of a run (`run.engine.Observer`) with a server.
+    """An observer of a run (`run.observer.Observer`) with a server.
 
     Args:
         port: of the page; 0 takes any that is free. `PortTaken` when it cannot be had.

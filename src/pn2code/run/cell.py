@@ -46,11 +46,12 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor
-from pn2code.run.engine import Engine, Observer
+from pn2code.run.engine import Engine
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Hand
 from pn2code.run.journals import ROBOTS, SUPERVISOR, RunJournal, say_where
 from pn2code.run.late_files import LateFiles
+from pn2code.run.observer import Observer
 from pn2code.run.punctuality import Punctuality
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning

@@ -32,7 +32,7 @@ from pn2code.run.cell import (
     summary_of,
     write_results,
 )
-from pn2code.run.engine import Observer
+from pn2code.run.observer import Observer
 from pn2code.run.record import RunRecord
 from pn2code.run.stops import Rate, Stops
 
