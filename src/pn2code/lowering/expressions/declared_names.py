@@ -5,14 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from pn2code.lowering import prelude
-from pn2code.lowering.expressions.parameters import (
-    split_parameters,
-)
-from pn2code.lowering.expressions.types import has_function as type_has_function
-from pn2code.lowering.expressions.values import (
-    BuiltinFunction,
-    pattern_symbols,
-)
+from pn2code.lowering.expressions.parameters import split_parameters
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
+from pn2code.lowering.expressions.values import BuiltinFunction, pattern_symbols
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import BOOL

@@ -16,10 +16,7 @@ from pn2code.diagnostics import Origin, Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import order_functions
 from pn2code.ir.nodes import Ir, Local, Rep
-from pn2code.lowering.codes import (
-    UNSUPPORTED_EXPRESSION,
-    UnsupportedError,
-)
+from pn2code.lowering.codes import UNSUPPORTED_EXPRESSION, UnsupportedError
 from pn2code.lowering.expressions.closures import FunctionValues, is_intricate
 from pn2code.lowering.expressions.exceptions import Exceptions
 from pn2code.lowering.expressions.parameters import (
@@ -30,8 +27,9 @@ from pn2code.lowering.expressions.parameters import (
     split_parameters,
 )
 from pn2code.lowering.expressions.reaching import Reaching, nodes
-from pn2code.lowering.expressions.types import Types, substitute
-from pn2code.lowering.expressions.types import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import substitute
+from pn2code.lowering.expressions.types import Types
 from pn2code.lowering.expressions.values import (
     Binding,
     BuiltinFunction,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pn2code.lowering.expressions.declared_names import DeclaredNames
 from pn2code.lowering.expressions.matching import is_irrefutable
 from pn2code.lowering.expressions.purity import is_impure_builtin
-from pn2code.lowering.expressions.types import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
 from pn2code.lowering.expressions.values import (
     Binding,
     BuiltinFunction,
