@@ -23,7 +23,8 @@ from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.division import divided
 from pn2code.run import engine
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.verdict.asked import gather
 from pn2code.verdict.controller import look
 from pn2code.verdict.opened import OpenNet

@@ -31,8 +31,8 @@ from pn2code.web.guard import new_token
 from pn2code.web.serving import listening, url
 
 if TYPE_CHECKING:
-    from pn2code.run.cell import Prepared
     from pn2code.run.engine import Engine
+    from pn2code.run.prepare import Prepared
 
 WHO = "the live page"
 _BUILDING_S = 20.0
