@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
-from pn2code.pnml.codes import (
-    PNML_ELEMENT,
-    PNML_REFERENCE,
-)
+from pn2code.pnml.codes import PNML_ELEMENT, PNML_REFERENCE
 from pn2code.pnml.nodes import Strangers, text_of
 from pn2code.reading.codes import DUPLICATE_ID
 from pn2code.reading.pages import readable

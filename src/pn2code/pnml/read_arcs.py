@@ -6,19 +6,13 @@ from dataclasses import replace
 
 from pn2code.diagnostics import Origin, SourceText
 from pn2code.diagnostics.suggestions import did_you_mean
-from pn2code.pnml.codes import (
-    PNML_SORT,
-    UNSUPPORTED_PNML,
-)
+from pn2code.pnml.codes import PNML_SORT, UNSUPPORTED_PNML
 from pn2code.pnml.entered import KNOWN
 from pn2code.pnml.nodes import structure_of, text_of
 from pn2code.pnml.read_nodes import NodeReader
 from pn2code.pnml.terms import Terms
 from pn2code.reading.codes import ARC_DANGLING
-from pn2code.reading.document import (
-    Inscription,
-    RawArc,
-)
+from pn2code.reading.document import Inscription, RawArc
 from pn2code.reading.xml import Node
 
 _ORIENTATIONS = {"inhibitor": "inhibitor", "reset": "reset", "test": "bothdir", "read": "bothdir"}

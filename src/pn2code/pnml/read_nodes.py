@@ -6,20 +6,13 @@ import re
 from dataclasses import replace
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
-from pn2code.pnml.codes import (
-    PNML_ELEMENT,
-    UNSUPPORTED_PNML,
-)
+from pn2code.pnml.codes import PNML_ELEMENT, UNSUPPORTED_PNML
 from pn2code.pnml.declarations import Declarations
 from pn2code.pnml.entered import Entered
 from pn2code.pnml.nodes import structure_of, text_of
 from pn2code.pnml.sorts import Sort
 from pn2code.pnml.terms import Terms
-from pn2code.reading.document import (
-    Inscription,
-    RawPlace,
-    RawTransition,
-)
+from pn2code.reading.document import Inscription, RawPlace, RawTransition
 from pn2code.reading.xml import Node
 
 _DIGITS = re.compile(r"[0-9]{1,9}")

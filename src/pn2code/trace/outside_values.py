@@ -8,9 +8,7 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, texts
 from pn2code.semantics.evaluation.references import References
-from pn2code.semantics.game.partial_marking import (
-    PartialMarking,
-)
+from pn2code.semantics.game.partial_marking import PartialMarking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_text import read_value
 from pn2code.semantics.values.data import Value

@@ -11,15 +11,8 @@ from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.semantics.evaluation.effects import Effect
 from pn2code.semantics.evaluation.evaluate import variables
 from pn2code.semantics.game.errors import GameError
-from pn2code.semantics.game.marking import (
-    Binding,
-    BindingElement,
-    variable_text,
-)
-from pn2code.semantics.game.partial_marking import (
-    PartialMarking,
-    without_delay,
-)
+from pn2code.semantics.game.marking import Binding, BindingElement, variable_text
+from pn2code.semantics.game.partial_marking import PartialMarking, without_delay
 from pn2code.semantics.game.token_game import reset
 from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import TimedMultiSet

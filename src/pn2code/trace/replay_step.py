@@ -12,18 +12,8 @@ from pn2code.semantics.evaluation.effects import Effects
 from pn2code.semantics.evaluation.references import References
 from pn2code.semantics.game.enabling import Demand
 from pn2code.semantics.game.errors import GameError, GivenUpError
-from pn2code.semantics.game.marking import (
-    BindingElement,
-    Marking,
-    place_text,
-    variable_text,
-)
-from pn2code.semantics.game.partial_marking import (
-    PartialMarking,
-    alternatives,
-    counted,
-    taken,
-)
+from pn2code.semantics.game.marking import BindingElement, Marking, place_text, variable_text
+from pn2code.semantics.game.partial_marking import PartialMarking, alternatives, counted, taken
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Value
