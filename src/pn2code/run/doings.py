@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from pn2code.run.command_words import words
 from pn2code.run.runner import RobotRunner
-from pn2code.tdl.interpret import MOST_AT_ONCE
 
 
 def doings(robots: Sequence[RobotRunner]) -> str:
@@ -34,12 +33,12 @@ def stuck(robots: Sequence[RobotRunner], now: float) -> str:
     )
 
 
-def repeats_without_time(robots: Sequence[RobotRunner], now: float) -> str:
-    """Who goes on for ever without time passing."""
+def repeats_without_time(robots: Sequence[RobotRunner], now: float, commands: int) -> str:
+    """Who goes on for ever without time passing, after so many commands."""
     busy = [r for r in robots if r.waiting is None and not r.finished]
     names = " and ".join(r.name for r in busy) or "a program"
     return (
-        f"{names} carried out {MOST_AT_ONCE:,} commands at {now:.3f} s without time passing: a script repeats "
+        f"{names} carried out {commands:,} commands at {now:.3f} s without time passing: a script repeats "
         "commands that take no time"
     )
 

@@ -47,13 +47,7 @@ from pn2code.run.failing import failed_in
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Said
 from pn2code.run.observer import Observer
-from pn2code.run.record import (
-    ActionRecord,
-    BrokenZone,
-    MessageRecord,
-    PartRecord,
-    RunRecord,
-)
+from pn2code.run.record import ActionRecord, BrokenZone, MessageRecord, PartRecord, RunRecord
 from pn2code.run.runner import CellStoppedError, RobotRunner, StoppedByHand
 from pn2code.run.sensors import Sensors
 from pn2code.run.stops import Stops
@@ -163,7 +157,9 @@ class Engine:
                 self._advance(self._next_event())
                 without_time = without_time + 1 if self.now <= before else 0
                 if without_time > MOST_AT_ONCE:
-                    raise CellStoppedError(repeats_without_time(self.robots, self.now))
+                    raise CellStoppedError(
+                        repeats_without_time(self.robots, self.now, MOST_AT_ONCE)
+                    )
         except CellStoppedError as why:
             self._stop(why)
         return self._close()

@@ -9,7 +9,7 @@ from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.semantics.evaluation.effects import Effect
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import Binding, BindingElement, variable_text
 from pn2code.semantics.game.partial_marking import PartialMarking, without_delay

@@ -10,7 +10,7 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects
 from pn2code.semantics.evaluation.references import References
-from pn2code.semantics.game.enabling import Demand
+from pn2code.semantics.game.demands import Demand
 from pn2code.semantics.game.errors import GameError, GivenUpError
 from pn2code.semantics.game.marking import BindingElement, Marking, place_text, variable_text
 from pn2code.semantics.game.partial_marking import PartialMarking, alternatives, counted, taken
