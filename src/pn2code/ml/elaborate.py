@@ -38,7 +38,7 @@ from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.border import at_border
 from pn2code.ml.typing.code_segments import CodeSegments, TypedCode
-from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
+from pn2code.ml.typing.colset_specs import Colsets
 from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.declarations import Declarations
 from pn2code.ml.typing.declared import break_modules, declared_by, types_declared_by
@@ -52,6 +52,7 @@ from pn2code.ml.typing.patterns import Patterns
 from pn2code.ml.typing.repeats import Repeats
 from pn2code.ml.typing.used_files import UsedFiles, used_by
 from pn2code.ml.typing.variables import Variables
+from pn2code.ml.typing.written_colset import ColsetSpec
 
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 
