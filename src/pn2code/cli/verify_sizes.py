@@ -10,7 +10,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis
 from pn2code.verify.exploring.result import Exploration, Known
-from pn2code.verify.report import control_text
+from pn2code.verify.report import control_text, unfolded_text
 from pn2code.verify.report.text import bounded_places
 
 MOST_NAMES = 6
@@ -39,6 +39,10 @@ def sizes_of(said: Said) -> Iterator[str]:
         )
     if found.reductions:
         yield from row("Reduced by", ", ".join(found.reductions))
+    for name, what in unfolded_text.rows(net, found):
+        yield from row(name, what)
+    if found.unfolded is not None and not found.unfolded.why:
+        return
     yield from row("Dead markings", dead_markings(found))
     if found.graph is not None:
         every = found.graph.home_count == found.nodes
