@@ -109,6 +109,7 @@ def verify(
         max_states=max_states,
         deadline=Deadline.after(max_seconds),
         threads=threads or cores(),
+        unfolds=True,
     )
     with ExitStack() as stack:
         place = traces or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="pn2code-")))

@@ -24,7 +24,8 @@ def sizes_of(said: Said) -> Iterator[str]:
     if found.known is not None:
         yield from _of_counted(said, found.known)
         return
-    for name, what in basis.complete(found):
+    is_explored = found.unfolded is None or not found.unfolded.is_alone
+    for name, what in basis.complete(found) if is_explored else ():
         more = ""
         if name == "Markings":
             more = f", in {found.seconds:.2f} s; compiled in {found.compile_seconds:.1f} s"
@@ -41,7 +42,7 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row("Reduced by", ", ".join(found.reductions))
     for name, what in unfolded_text.rows(net, found):
         yield from row(name, what)
-    if found.unfolded is not None and not found.unfolded.why:
+    if found.unfolded is not None and found.unfolded.is_asked:
         return
     yield from row("Dead markings", dead_markings(found))
     if found.graph is not None:

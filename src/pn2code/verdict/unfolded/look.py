@@ -1,6 +1,6 @@
 """What the unfolded net tells where a limit has ended the exploration of all markings, or instead of it.
 
-    found = look(opened, asked, found, limits, options, d)
+    found = look(opened, asked, found, limits, options)
     found.unfolded.whole, found.unfolded.told["a property"]
 
 The net is unfolded, and asked by methods that need not visit one marking after the other: decision diagrams with
@@ -50,6 +50,8 @@ from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.unfolded import Told, Unfolded, Whole
 
+ALONE = 1
+"""Most states of an exploration instead of which the unfolded net is asked: no more than the initial marking."""
 EXPLORING = 2 / 3
 """Of a limit of time, what the exploration of single markings may take where the unfolded net can be asked, too."""
 _LEAST_S, _MOST_S = 10.0, 300.0
@@ -59,7 +61,7 @@ _PROPERTIES = 0.7
 _RUNS = 0.3
 """Of the time that is left, in this order: for sizes, for properties, for runs; the rest is for the bounds."""
 _LEAST_MIB = 256
-_RUN_S = 20.0
+_RUN_S = 10.0
 _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
 
@@ -89,7 +91,6 @@ def look(
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
-    d: Diagnostics,
 ) -> Exploration:
     """The exploration, with what the unfolded net tells besides.
 
@@ -98,7 +99,6 @@ def look(
         asked: what is asked of it.
         found: what was explored, up to a limit.
         limits, options: of the exploration; runs go where they say.
-        d: gets the errors.
 
     Raises:
         RuntimeError: the methods contradict each other, or the exploration.
@@ -107,35 +107,46 @@ def look(
         return found
     began = time.monotonic()
     deadline = limits.deadline
-    if deadline.left is None:
-        deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     if deadline.is_over():
         return found
     options.stage("asking the unfolded net ...")
+    wait_until_built()
+    if deadline.left is None:
+        deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
         with deadline.enforced():
             why = why_not(opened.flat)
             if why:
-                return replace(found, unfolded=Unfolded(why=why))
+                return _with(found, Unfolded(why=why), limits)
             unfolding = _unfolded(opened.flat)
             if isinstance(unfolding, str):
-                return replace(found, unfolded=Unfolded(why=unfolding))
+                return _with(found, Unfolded(why=unfolding), limits)
             game = Game(opened.flat, opened.storage, files=Files(None))
             questions = Questions.of(game, unfolding, asked.plain)
     except TimeIsOverError:
-        return replace(found, unfolded=Unfolded(why="it took too long to unfold it"))
+        return _with(found, Unfolded(why="it took too long to unfold it"), limits)
     except GameError as problem:
-        return replace(found, unfolded=Unfolded(why=problem.message))
-    wait_until_built()
-    with engine(d) as program:
-        if program is None:
-            return found
+        return _with(found, Unfolded(why=problem.message), limits)
+    built = Diagnostics()
+    with engine(built) as program:
+        if program is None:  # the explorer may have been kept from before
+            return _with(found, Unfolded(why=built.errors[0].message), limits)
         asker = _Asker(program, unfolding, questions, deadline, limits, options)
         asker.ask_all()
         asker.find_runs(opened)
     made = replace(asker.made, seconds=time.monotonic() - began)
-    _check(opened.flat, found, made)
-    return replace(found, unfolded=made)
+    if wrong := contradiction(found, made):
+        raise RuntimeError(f"the unfolded net is another one: {wrong}")
+    return _with(found, made, limits)
+
+
+def _with(found: Exploration, made: Unfolded, limits: Limits) -> Exploration:
+    is_alone = limits.max_states == ALONE
+    made = replace(made, is_alone=is_alone)
+    if not is_alone or not made.is_asked:
+        return replace(found, unfolded=made)
+    # Nothing is to be said of the initial marking as if it were a state space.
+    return replace(found, why="unfolded", told=False, bounds=None, fired=(), unfolded=made)
 
 
 def _unfolded(net: FlatNet) -> Unfolding | str:
@@ -173,7 +184,12 @@ class _Asker:
         """Sizes, properties, and what a report says of places and transitions."""
         q, u = self.questions, self.unfolding
         self.made = replace(
-            self.made, places=len(u.places), transitions=len(u.transitions), told={}, bounds={}
+            self.made,
+            places=len(u.places),
+            transitions=len(u.transitions),
+            told={},
+            bounds={},
+            refused=q.refused,
         )
         if not q.tables.fits():
             self.made = replace(self.made, why="its numbers of tokens are too large")
@@ -258,24 +274,15 @@ class _Asker:
         return o.evidence / f".pn2code-{os.getpid()}-u{number}.trace.jsonl"
 
 
-def _check(net: FlatNet, found: Exploration, made: Unfolded) -> None:
-    """What was seen of the state space must be in what is said of all of it.
-
-    Raises:
-        RuntimeError: it is not.
-    """
-    wrong: str = ""
+def contradiction(found: Exploration, made: Unfolded) -> str:
+    """What was seen of the state space and is not in what is said of all of it; "": nothing."""
     if made.whole is not None and not found.is_reduced and made.whole.states < found.nodes:
-        wrong = f"{made.whole.states} markings, but {found.nodes} were seen"
-    elif found.dead_count and made.has_dead is False:
-        wrong = "no dead marking, but one was seen"
-    fired = {i for i, count in enumerate(found.fired) if count}
-    for i in made.never:
-        if i in fired:
-            wrong = f"`{net.transitions[i].name}` never occurs, but it was seen to"
+        return f"there are {made.whole.states} markings, but {found.nodes} were seen"
+    if found.dead_count and made.has_dead is False:
+        return "there is no dead marking, but one was seen"
+    if any(i < len(found.fired) and found.fired[i] for i in made.never):
+        return "a transition never occurs that was seen to"
     bounds: Mapping[int, int] = made.bounds or {}
-    for i, most in bounds.items():
-        if found.bounds is not None and found.bounds[i].upper > most:
-            wrong = f"`{net.places[i].name}` holds {most} tokens at most, but more were seen"
-    if wrong:
-        raise RuntimeError(f"the unfolded net says: {wrong}")
+    if any(found.bounds is not None and found.bounds[i].upper > n for i, n in bounds.items()):
+        return "places hold fewer tokens at most than were seen in them"
+    return ""

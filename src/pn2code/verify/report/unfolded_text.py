@@ -47,7 +47,7 @@ def _dead(u: Unfolded) -> str:
     if not u.has_dead:
         return f"none{by}"
     if u.dead_run is None:
-        return f"there are some{by}; random walks have found no run to one"
+        return f"there are some{by}; no run to one was found in time"
     file, steps = u.dead_run
     return f"there are some{by} (a run of {steps} step{'s' * (steps != 1)}: {file})"
 
