@@ -24,7 +24,6 @@ from pathlib import Path
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import record
 from pn2code.contest.building import wait_until_built
-from pn2code.contest.diagrams import METHOD
 from pn2code.contest.engine import engine
 from pn2code.contest.examinations import Asked as Question
 from pn2code.contest.lines import Result
@@ -56,6 +55,8 @@ EXPLORING = 2 / 3
 """Of a limit of time, what the exploration of single markings may take where the unfolded net can be asked, too."""
 _LEAST_S, _MOST_S = 10.0, 300.0
 """Where time is not limited: half of what the exploration took, within these bounds."""
+_UNFOLDING = 0.35
+"""Of the time, for unfolding: where colours do not end it would go on for ever."""
 _SIZES = 0.4
 _PROPERTIES = 0.7
 _RUNS = 0.3
@@ -118,7 +119,8 @@ def look(
             why = why_not(opened.flat)
             if why:
                 return _with(found, Unfolded(why=why), limits)
-            unfolding = _unfolded(opened.flat)
+            with deadline.share(_UNFOLDING).enforced():
+                unfolding = _unfolded(opened.flat)
             if isinstance(unfolding, str):
                 return _with(found, Unfolded(why=unfolding), limits)
             game = Game(opened.flat, opened.storage, files=Files(None))
@@ -131,7 +133,8 @@ def look(
     with engine(built) as program:
         if program is None:  # the explorer may have been kept from before
             return _with(found, Unfolded(why=built.errors[0].message), limits)
-        asker = _Asker(program, unfolding, questions, deadline, limits, options)
+        occurred = frozenset(i for i, count in enumerate(found.fired) if count)
+        asker = _Asker(program, unfolding, questions, deadline, limits, options, occurred)
         asker.ask_all()
         asker.find_runs(opened)
     made = replace(asker.made, seconds=time.monotonic() - began)
@@ -162,7 +165,10 @@ def _unfolded(net: FlatNet) -> Unfolding | str:
 
 @record
 class _Asker:
-    """Asks one thing after the other, as far as the time allows."""
+    """Asks one thing after the other, as far as the time allows.
+
+    `occurred`: transitions that were seen to occur.
+    """
 
     program: Path
     unfolding: Unfolding
@@ -170,6 +176,7 @@ class _Asker:
     deadline: Deadline
     limits: Limits
     options: ExploreOptions
+    occurred: frozenset[int]
     made: Unfolded = field(default_factory=Unfolded)
 
     @property
@@ -216,27 +223,15 @@ class _Asker:
         )
 
     def _ask_rest(self) -> None:
-        """What occurs, and how many tokens places hold at most."""
+        """What occurs, as far as it was not seen to, and how many tokens places hold at most."""
         q, net = self.questions, self.unfolding.net
         which = range(len(net.transitions))
-        without = [i for i in which if not q.tables.transitions[transition_name(i)]]
-        known: dict[str, bool | int] = {}
-        rest = [*q.transitions(which), *q.bounds(range(len(net.places)))]
-        seconds = self._left(1.0 - _RUNS)
-        only = METHOD if self.made.is_whole else ""
-        if rest and seconds > 0.0:
-            for result in answers(
-                self.program,
-                q.tables,
-                rest,
-                seconds=seconds,
-                mebibytes=self.mebibytes,
-                only=only,
-            ):
-                known[result.name] = result.value
-        occurs = {i: known.get(transition_name(i)) for i in which}
-        never = sorted([*without, *(i for i, o in occurs.items() if o is False)])
-        open_ = [i for i, o in occurs.items() if o is None and i not in without]
+        without = {i for i in which if not q.tables.transitions[transition_name(i)]}
+        unseen = [i for i in which if i not in without and i not in self.occurred]
+        rest = [*q.transitions(unseen), *q.bounds(range(len(net.places)))]
+        known = {r.name: r.value for r in self._answers(rest, self._left(1.0 - _RUNS))}
+        never = sorted([*without, *(i for i in unseen if known.get(transition_name(i)) is False)])
+        open_ = [i for i in unseen if transition_name(i) not in known]
         bounds = {i: int(known[f"p{i}"]) for i in range(len(net.places)) if f"p{i}" in known}
         bounds |= {i: 0 for i, own in enumerate(self.unfolding.of_place) if not own}
         self.made = replace(self.made, never=tuple(never), open_=tuple(open_), bounds=bounds)
