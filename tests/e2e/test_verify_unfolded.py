@@ -11,7 +11,12 @@ from typer.testing import CliRunner
 
 from helpers import netbuilder
 from pn2code.cli.main import app
-from pn2code.verdict.unfolded.look import contradiction
+from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.asked import Asked
+from pn2code.verdict.opened import read
+from pn2code.verdict.unfolded.look import contradiction, look
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.unfolded import Unfolded, Whole
 
@@ -153,3 +158,38 @@ def test_what_was_seen_must_agree() -> None:
         (replace(good, bounds={0: 2}), "fewer tokens"),
     ):
         assert says in contradiction(found, wrong)
+
+
+def test_it_can_be_interrupted(table: Path) -> None:
+    """What is known by then is said, and nobody waits for the rest."""
+    opened = read(table, {"n": "60"}, Diagnostics())
+    assert opened is not None
+    bounds = (Bounds(0, 60, None, None),) * 4
+    sizes = (7, 9, 0, 0.0, 0.0, 0.0, 0.0, 1)
+    found = Exploration(
+        False, "states", None, *sizes, (1, 0, 0, 0), bounds, 0, (), None, (), None, ()
+    )  # fmt: skip
+    told = look(opened, Asked(), found, Limits(), ExploreOptions(interrupted=lambda: True)).unfolded
+    assert told is not None and told.is_asked and told.places == 240
+    assert not told.is_whole
+
+
+def test_a_colour_outside_its_colour_set(tmp_path: Path) -> None:
+    """That a token becomes one is seen when the net is unfolded; then nothing is said of it."""
+    text = """
+        net Outside
+          standard
+          colset N = int with 0..50;
+          var n : N;
+          place P : N = 1`0
+          place Q : UNIT = 9`()
+          trans Up
+            in P : n
+            out P : n + 1
+          trans Other
+            in Q : ()
+    """
+    net = netbuilder.write(text, tmp_path / "outside.cpn")
+    code, printed = verify(net, "--max-states", 20, "-o", tmp_path)
+    assert code == 3
+    assert "it cannot be asked instead: `Outside.Up[n=50]`" in printed or "raise" in printed

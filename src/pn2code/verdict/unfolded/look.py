@@ -16,9 +16,11 @@ reset arcs, and no code segments.
 from __future__ import annotations
 
 import os
+import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
@@ -62,6 +64,7 @@ _PROPERTIES = 0.7
 _RUNS = 0.3
 """Of the time that is left, in this order: for sizes, for properties, for runs; the rest is for the bounds."""
 _LEAST_MIB = 256
+_LOOK_S = 0.1
 _RUN_S = 10.0
 _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
@@ -110,8 +113,13 @@ def look(
     deadline = limits.deadline
     if deadline.is_over():
         return found
-    options.stage("asking the unfolded net ...")
-    wait_until_built()
+    options.stage("unfolding the net ...")
+    sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
+    try:
+        with deadline.enforced():
+            wait_until_built()
+    except TimeIsOverError:
+        return _with(found, Unfolded(why="there was no time to compile what asks it"), limits)
     if deadline.left is None:
         deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
@@ -134,9 +142,17 @@ def look(
         if program is None:  # the explorer may have been kept from before
             return _with(found, Unfolded(why=built.errors[0].message), limits)
         occurred = frozenset(i for i, count in enumerate(found.fired) if count)
-        asker = _Asker(program, unfolding, questions, deadline, limits, options, occurred)
-        asker.ask_all()
-        asker.find_runs(opened)
+        made = Unfolded(
+            places=len(unfolding.places),
+            transitions=len(unfolding.transitions),
+            bounds={},
+            told={},
+            refused=questions.refused,
+        )
+        asker = _Asker(program, unfolding, questions, deadline, limits, options, occurred, made)
+        with suppress(TimeIsOverError), _until(options.interrupted).enforced():
+            asker.ask_all()
+            asker.find_runs(opened)
     made = replace(asker.made, seconds=time.monotonic() - began)
     if wrong := contradiction(found, made):
         raise RuntimeError(f"the unfolded net is another one: {wrong}")
@@ -150,6 +166,11 @@ def _with(found: Exploration, made: Unfolded, limits: Limits) -> Exploration:
         return replace(found, unfolded=made)
     # Nothing is to be said of the initial marking as if it were a state space.
     return replace(found, why="unfolded", told=False, bounds=None, fired=(), unfolded=made)
+
+
+def _until(interrupted: Callable[[], bool]) -> Deadline:
+    """A deadline that comes when somebody interrupts: it is looked at ten times a second."""
+    return Deadline(_LOOK_S, _LOOK_S, lambda: 2 * _LOOK_S if interrupted() else 0.0)
 
 
 def _unfolded(net: FlatNet) -> Unfolding | str:
@@ -177,7 +198,7 @@ class _Asker:
     limits: Limits
     options: ExploreOptions
     occurred: frozenset[int]
-    made: Unfolded = field(default_factory=Unfolded)
+    made: Unfolded
 
     @property
     def mebibytes(self) -> int:
@@ -189,22 +210,16 @@ class _Asker:
 
     def ask_all(self) -> None:
         """Sizes, properties, and what a report says of places and transitions."""
-        q, u = self.questions, self.unfolding
-        self.made = replace(
-            self.made,
-            places=len(u.places),
-            transitions=len(u.transitions),
-            told={},
-            bounds={},
-            refused=q.refused,
-        )
+        q = self.questions
         if not q.tables.fits():
             self.made = replace(self.made, why="its numbers of tokens are too large")
             return
+        self.options.stage("counting the markings of the unfolded net ...")
         sizes = space(self.program, q.tables, seconds=self._left(_SIZES), mebibytes=self.mebibytes)
         if sizes is not None:
             methods = tuple(sizes.method.split())
             self.made = replace(self.made, whole=Whole(sizes.states, sizes.arcs, methods))
+        self.options.stage("asking the unfolded net for dead markings and properties ...")
         told: dict[str, Told] = {}
         for result in self._answers([q.dead(), *q.properties], self._left(_PROPERTIES)):
             methods = tuple(result.techniques.split())
@@ -228,6 +243,7 @@ class _Asker:
         which = range(len(net.transitions))
         without = {i for i in which if not q.tables.transitions[transition_name(i)]}
         unseen = [i for i in which if i not in without and i not in self.occurred]
+        self.options.stage("asking the unfolded net what occurs, and for bounds ...")
         rest = [*q.transitions(unseen), *q.bounds(range(len(net.places)))]
         known = {r.name: r.value for r in self._answers(rest, self._left(1.0 - _RUNS))}
         never = sorted([*without, *(i for i in unseen if known.get(transition_name(i)) is False)])
@@ -246,6 +262,7 @@ class _Asker:
                 wanted[name] = text
         if self.made.has_dead and self.options.traces is not None:
             wanted[_DEAD_RUN] = "reach dead"
+        self.options.stage("looking for runs in the unfolded net ...")
         seconds = min(self._left(), _RUN_S)
         found = hunt(self.program, self.questions.tables, wanted, seconds=seconds)
         for number, (name, steps) in enumerate(sorted(found.items())):

@@ -36,7 +36,7 @@ def rows(net: FlatNet, found: Exploration) -> Iterator[tuple[str, str]]:
 
 def number(n: int) -> str:
     """With commas; of a long one the first digits: `1.2345e+40`."""
-    text = str(n)
+    text = str(n)  # of any length: whoever has counted so far allows it
     return f"{n:,}" if len(text) <= _DIGITS else f"{text[0]}.{text[1:5]}e+{len(text) - 1}"
 
 
