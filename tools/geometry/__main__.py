@@ -52,8 +52,9 @@ from pn2code.geometry.placing.look import Request, look
 from pn2code.geometry.placing.search import Wish
 from pn2code.geometry.report import text
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.placed import run_placed
+from pn2code.run.prepare import RunOptions
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits, cores
 

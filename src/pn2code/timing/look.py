@@ -34,7 +34,7 @@ from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.control_types import CellProgram
-from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"

@@ -22,7 +22,8 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import PVar, Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.evaluate import Evaluator, match
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.evaluation.matching import match
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.errors import GameError, NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking

@@ -19,7 +19,8 @@ from pn2code.ml.parsing.lalr import Loop, SyntaxProblem
 from pn2code.ml.parsing.lexer import Lexeme, insert_delay_parentheses, tokenize
 from pn2code.ml.parsing.plain_text import guessed_names, old_declaration
 from pn2code.ml.parsing.tables import tables
-from pn2code.ml.parsing.tree import Group, NotANameError, TreeBuilder
+from pn2code.ml.parsing.tree import TreeBuilder
+from pn2code.ml.parsing.tree_parts import Group, NotANameError
 
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
 
