@@ -172,14 +172,21 @@ class Search:
         ]
 
     def stopped(self) -> set[int]:
-        """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, or
-        a script may find no transition."""
-        faulted = {
+        """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, a
+        script may find no transition, or a channel would hold two messages."""
+        places = [c.place for c in self.graph.partition.channels]
+        full = {i for i, m in enumerate(self.graph.marked) if any(m.get(p, 0) > 1 for p in places)}
+        return self.halting | {
             node
-            for node, (*_, under_way) in enumerate(self.situations)
-            if any(left >= FOREVER // 2 for *_, left in under_way)
+            for node, (state, _, under_way) in enumerate(self.situations)
+            if state in full or any(left >= FOREVER // 2 for *_, left in under_way)
         }
-        return faulted | self.halting
+
+    def overfull(self) -> list[str]:
+        """The channels that may come to hold two messages, which stops the cell."""
+        marked = self.graph.marked
+        channels = self.graph.partition.channels
+        return [c.name for c in channels if any(m.get(c.place, 0) > 1 for m in marked)]
 
     def _late(self, node: int, ns: int) -> int:
         """ns: by how much what should have ended first there ends later, where so much time goes by."""
@@ -188,14 +195,6 @@ class Search:
             return 0
         going = [left for *_, left in self.situations[node][2] if left < FOREVER // 2]
         return max(0, ns - min(going)) if going else 0
-
-    def around(self) -> list[int]:
-        """The elements of a repetition that takes time, from which an end can be reached."""
-        out = []
-        for node, target in zip(self.cycle, [*self.cycle[1:], *self.cycle[:1]], strict=True):
-            marks = [mark for to, _, mark in self.successors[node] if to == target]
-            out.append(max(marks))
-        return [m for m in out if m >= 0]
 
     def elements(self, path: TimedPath) -> list[int]:
         """What occurs on a path."""
