@@ -180,9 +180,11 @@ def longest_owed(search: Search, place: int) -> int | None:
     When the supervisor has finished it waits for none.
     """
     marked, over = search.graph.marked, search.graph.over
+    # Where the time was over a situation may have been met of which nobody was to know what comes after it.
+    known = zip(search.situations, search.successors, strict=False)
     owing = [
         i
-        for i, (state, *_) in enumerate(search.situations)
+        for i, ((state, *_), _) in enumerate(known)
         if place in marked[state] and state not in over
     ]
     # Where nothing more happens the supervisor still waits, and no answer comes.

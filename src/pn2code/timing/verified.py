@@ -99,6 +99,8 @@ def with_durations(
         d: gets the errors.
     """
     measured: list[Measured] = []
+    answers: list[Answer] = []
+    times: Times | None = None
     try:
         with limits.deadline.enforced():
             program = None if control is None else control.program
@@ -106,13 +108,14 @@ def with_durations(
             if times is None:
                 return None
             judge = _Judge(control, opened, asked, times, measured, folder)
-            answers = tuple(judge.answer(a) for a in said.answers)
+            for a in said.answers:
+                answers.append(judge.answer(a))
     except TimeIsOverError:
-        times = Times((), 0.0, clause("seconds"))
-        answers = tuple(
-            replace(a, why=clause("seconds")) if is_timed(a) else a for a in said.answers
-        )
-    said = replace(said, answers=answers, durations=Durations(times))
+        # What was found out by then stays known.
+        times = times or Times((), 0.0, clause("seconds"))
+        for a in said.answers[len(answers) :]:
+            answers.append(replace(a, why=clause("seconds")) if is_timed(a) else a)
+    said = replace(said, answers=tuple(answers), durations=Durations(times))
     return said if control is None else weighed(said, control.premises, times)
 
 
@@ -202,7 +205,9 @@ class _Judge:
         slow = Wait(None, "open")
         if not anyhow.why and anyhow.adds_up:
             slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
-        is_kept = slow.ns is not None and slow.ns + TIE <= limit
+        is_kept = (
+            slow.ns is not None and slow.ns + TIE <= limit and anyhow.never_stops(one.runs.latest)
+        )
         clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
         return self._yes(a, wait, AT_MOST if is_kept else PLANNED, *clock)
 

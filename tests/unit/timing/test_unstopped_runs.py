@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import pytest
 
+from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS
 from pn2code.timing.longest import Arc
 from pn2code.timing.look import Measured
@@ -157,3 +158,25 @@ def test_a_repetition_in_which_an_answer_is_late_is_none() -> None:
         if not around:
             longest = runs.longest({3})
             assert longest is not None and longest.ns == 0
+
+
+@pytest.mark.parametrize(
+    ("fault", "halts", "latest", "is_sure"),
+    [
+        ("", False, 5, True),
+        ("", False, 4, False),
+        ("out of reach", False, 5, False),
+        ("", True, 5, False),
+    ],
+)
+def test_what_may_stop_a_run_in_some_order(
+    fault: str, *, halts: bool, latest: int, is_sure: bool
+) -> None:
+    """A "yes" for shorter commands, too, says that no run is stopped before."""
+    anyhow: Any = SimpleNamespace(
+        graph=SimpleNamespace(running=SimpleNamespace(owing={1: 5})),
+        inside=lambda _: 5 * NS,
+        faults={(0, 0): fault} if fault else {},
+        halts=halts,
+    )
+    assert Anyhow.never_stops(anyhow, latest * NS) == is_sure
