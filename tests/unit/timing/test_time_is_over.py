@@ -45,7 +45,9 @@ def test_answers_that_were_found_before_stay(
     said = Said(nobody, {}, nobody, open_, None, ())
     limits: Any = SimpleNamespace(deadline=NEVER)
     found = verified.with_durations(said, None, nobody, limits, nobody, Path(), nobody)
-    assert found is not None and found.durations is not None and found.durations.times is times
+    assert found is not None
+    durations: Any = found.durations
+    assert durations.times is times
     assert [a.answer for a in found.answers] == ["yes"] * answered + ["inconclusive"] * (
         3 - answered
     )
