@@ -115,18 +115,23 @@ class Sweeper:
         return np.array(rows)
 
     def _is_by_the_way(self, one: str, two: str, *near: Track | Standing) -> bool:
-        """Whether a tool that grips parts must keep apart from this one, to which its move does not lead."""
-        grip = self._backend.distances.grips.between(one, two)
-        if grip is None:
+        """Whether a tool that grips parts, or a part in it, must keep apart from this one: its move leads elsewhere."""
+        led = self._backend.distances.led
+        contact = led.between(one, two)
+        if contact is None:
             return False
-        robot, name = grip
-        track = next(x for x in near if isinstance(x, Track) and x.robot == robot)
+        tracks = {x.robot: x for x in near if isinstance(x, Track)}
+        track = tracks[contact.robot]
         if track.leg.kind not in PATHS:
             return False
-        other, part = next((x, p) for x in near for p in x.parts if p.name == name)
+        parts = {p.name: p for x in near for p in x.parts}
+        touching = parts.get(contact.part), parts.get(contact.other)
+
         # What stands on a plate that moves may be touched by nobody else, so it stands where it was.
-        frame = other.place(part) if isinstance(other, Track) else part.frame
-        return not track.ends.is_at(part, frame, ROUNDING)
+        def stands(name: str) -> Array:
+            return tracks[name].leg.start.q
+
+        return not led.is_led(contact, track.ends, touching, stands, ROUNDING)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands; where they touch, the first overlap that is met."""
