@@ -15,7 +15,7 @@ so it does not matter what else is there.
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -68,6 +68,28 @@ class LedContacts:
                     robot, _, name = one.partition("/")
                     found = LedContact(robot, name if rule.led == "part" else "", other)
         return found
+
+    def is_by_the_way(
+        self,
+        a: str,
+        b: str,
+        ends_of: Callable[[str], MoveEnds | None],
+        parts: Mapping[str, Part],
+        stands: Callable[[str], Array],
+        less: float = 0.0,
+    ) -> bool:
+        """Whether a contact that rules permit is none to which the robot's line or arc leads.
+
+        Args:
+            ends_of: of what a robot does, by name; None: it is on no line or arc.
+            parts: by the names that they have in contacts; stands, less: as of `is_led`.
+        """
+        contact = self.between(a, b)
+        ends = None if contact is None else ends_of(contact.robot)
+        if contact is None or ends is None:
+            return False
+        touching = parts.get(contact.part), parts.get(contact.other)
+        return not self.is_led(contact, ends, touching, stands, less)
 
     def is_led(
         self,
