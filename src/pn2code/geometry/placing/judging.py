@@ -58,8 +58,8 @@ class Walked:
     Args:
         done: the part of the commands that could be planned, 0 to 1.
         condition: the worst condition number; limit: rad, the least margin of a limit; see `Walk.counts`.
-        clearance: m, the least distance from what stands, parts too, and from arms at HOME, at most `FAR`; not above
-            zero if an arm touches itself. What may touch does not count, unless it is deeper than permitted.
+        clearance: m, the least distance from the scene and from arms at HOME, at most `FAR`; not above zero if an arm
+            touches itself, or a part that stands. What may touch does not count, unless it is deeper than permitted.
         seconds: how long all commands together take.
     """
 
@@ -181,7 +181,7 @@ class Judge:
         stays = self._moved if backend is self._backend else ()
         own = {f"{robot}_{what}" for robot in stays for what in ("pedestal", "rail")}
         things = {t for t in backend.things if t not in own}
-        things.update(p.name for p in seen.among.standing)
+        things |= seen.names
         pairs, name = backend.distances.pairs, seen.robot
         if any(self._counted(gap, seen) <= 0.0 for gap in pairs("self", name, _TOUCHING)):
             return 0.0
@@ -192,12 +192,16 @@ class Judge:
         return min((self._counted(gap, seen) for gap in found), default=limit)
 
     def _counted(self, gap: Clearance, seen: _Seen) -> float:
-        """On a joint move nothing may touch; else what may touch does not count."""
+        """On a joint move nothing may touch; else what may touch does not count.
+
+        How far parts that stand are from what is carried past them the net says, not where the arm stands.
+        """
         allowed = gap.permitted(is_free=seen.ends is None)
         if allowed is None or self._led.is_by_the_way(
             gap.a, gap.b, seen.ends_of, seen.among.parts, seen.stands
         ):
-            return gap.distance
+            is_part = gap.b in seen.names
+            return FAR if is_part and gap.distance > 0.0 else gap.distance
         return FAR if gap.distance + allowed >= 0.0 else gap.distance
 
 
@@ -209,6 +213,11 @@ class _Seen:
     robot: str
     ends: MoveEnds | None
     among: Among
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Of the parts that stand."""
+        return frozenset(p.name for p in self.among.standing)
 
     def ends_of(self, robot: str) -> MoveEnds | None:
         """All others stand."""
