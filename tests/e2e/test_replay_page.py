@@ -558,6 +558,8 @@ def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium:
         )
         assert chip["height"] < 30 and search["width"] >= 60
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
+        cut = "() => { const e = document.getElementById('verdict'); return e.scrollWidth - e.clientWidth; }"
+        assert browser.ask(cut) <= 0 and chip["width"] < 375
 
 
 @pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])
