@@ -209,6 +209,7 @@ export class ReplayPage {
     }
     this.net.show(this.run.net.transitions[t].instance);
     this.net.mark(t, -1);
+    this.code?.select(t);
     this.update();
   }
 

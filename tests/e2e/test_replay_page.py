@@ -164,6 +164,55 @@ class TestRivetingCell:
         top = browser.ask("() => document.querySelector('.mark.moves').style.top")
         assert round(float(top.removesuffix("px")) / 17) + 1 == action.line
 
+    def test_lines_of_what_is_chosen_are_seen(self, browser: Page, shown: Shown) -> None:
+        """Of a bar whose command another step has begun; and of a transition that never occurs."""
+        record = shown.result.record
+        action = next(a for a in record.actions if a.kind == "tool")
+        browser.page.get_by_role("tab", name="Code").click()
+        follow = browser.page.locator("#panel-code").get_by_role("button", name="Follow")
+        if follow.get_attribute("aria-pressed") == "false":
+            follow.click()
+        seen = """() => {
+          const { code, run } = replay.page, view = code.view.getBoundingClientRect();
+          const inside = (m) => m.getBoundingClientRect().top >= view.top - 1 && m.getBoundingClientRect().top < view.bottom;
+          return [run.programs.files[code.shown].name, [...document.querySelectorAll('.mark.chosen')].some(inside)];
+        }"""
+        select = """([name, jump]) => {
+          const { page } = replay, i = page.course.net.transitions.findIndex((t) => t.name === name);
+          page.selectTransition(i, jump);
+        }"""
+        browser.ask("t => replay.seek(t)", (action.start + action.end) / 2)
+        browser.ask(select, [action.transition, False])
+        assert browser.ask(seen) == [f"{action.robot}.tdl", True]
+        occurred = {e["transition"] for e in record.events if "transition" in e}
+        programs = shown.result.prepared.generated.files
+        never = next(
+            b.element
+            for f in programs
+            for b in f.blocks
+            if f.path == "net.c" and b.kind == "transition" and b.element not in occurred
+        )
+        browser.ask(select, [never, True])
+        assert browser.ask(seen) == ["net.c", True]
+        browser.ask("() => replay.seek(0)")
+        assert browser.page.locator(".mark.chosen").count() == 0
+
+    def test_a_watched_place_shows_its_values(self, browser: Page) -> None:
+        """Numbers are a curve, and values are written where they have room; the number of tokens alone said nothing."""
+        browser.page.get_by_role("tab", name="Watch").click()
+        written = browser.ask("""() => {
+          const { page } = replay, { prototype } = CanvasRenderingContext2D, own = prototype.fillText, said = [];
+          const i = page.course.net.places.findIndex((p) => p.name === "Cell.Robot1.Commanded");
+          prototype.fillText = function (text, ...how) { said.push(text); return own.call(this, text, ...how); };
+          page.watch.add(i);
+          prototype.fillText = own;
+          const { history } = page.watch.places.get(i);
+          const values = history.map(({ count, only }) => (count ? page.course.texts[page.course.tokens.text[only]] : ""));
+          page.watch.remove(i);
+          return [said, values];
+        }""")
+        assert set(written[0]) & {"2", "5"} and set(written[1]) >= {"", "1", "2", "5"}
+
     def test_a_line_of_code_leads_to_its_transition(self, browser: Page, shown: Shown) -> None:
         block = next(
             b
