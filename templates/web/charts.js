@@ -190,7 +190,8 @@ export function drawChart(c, axis, chart, w) {
   });
   c.fillStyle = axis.ink?.faint ?? "";
   c.textAlign = "right";
-  c.fillText(String(Number(chart.limit.toPrecision(3))), w - 2, at(chart.limit) - 7);
+  const line = at(chart.limit);
+  c.fillText(String(Number(chart.limit.toPrecision(3))), w - 2, line < y + 13 ? line + 8 : line - 7);
   c.textAlign = "left";
   c.restore();
   drawLegend(c, axis, chart);

@@ -392,6 +392,13 @@ class TestRivetingCell:
             ("moveLinear", "transition"),
             ("dadosrobo1", "place"),
             ("5802.2", "value"),
+            # A message has other digits than the value of the net.
+            (
+                browser.ask(
+                    "() => replay.page.messages.messages.find((m) => m.text.includes('.')).text"
+                ),
+                "message",
+            ),
         ):
             field.fill(word)
             assert browser.page.locator(f"#found .kind.{kind}").count() >= 1
