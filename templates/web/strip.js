@@ -72,7 +72,8 @@ export function drawStrip(canvas, history, course, end) {
   c.lineWidth = 0.5;
   c.beginPath();
   for (let i = 1; i < numbers.length; i++) {
-    if (numbers[i] !== numbers[i - 1]) continue; // where it is another one, this is seen
+    // Another number is seen by itself, and what is nearer than this would be one area.
+    if (numbers[i] !== numbers[i - 1] || begins(i) - begins(i - 1) < ROOM) continue;
     c.moveTo(begins(i), y(numbers[i]));
     c.lineTo(begins(i), ground);
   }
