@@ -314,6 +314,32 @@ class TestPlaying:
         browser.page.keyboard.press("p")
         assert where.get_attribute("aria-live") == "polite"
 
+    def test_how_far_a_run_is_has_a_rate_and_an_estimate(self, browser: Page) -> None:
+        said = browser.ask("""() => {
+            const { bar } = play.page, own = performance.now, said = [];
+            let t = 0;
+            performance.now = () => t;
+            for (const [total, ...moments] of [[1000, [100, 90], [2000, 500], [4000, 1000]], [0, [2000, 5000]]]) {
+                t = 0;
+                bar.begin(total);
+                for (const [now, steps] of moments) {
+                    t = now;
+                    bar.progress({ progress: steps });
+                    said.push(bar.busy.textContent);
+                }
+            }
+            performance.now = own;
+            bar.setBusy(false);
+            bar.busy.textContent = "";
+            return said;
+        }""")
+        assert said == [
+            "90 …",
+            "500, 250 a second, about 2 s left",
+            "1,000 …, reading what has occurred",
+            "5,000, 2,500 a second",
+        ]
+
     def test_a_run_that_cannot_begin_is_over(self, browser: Page) -> None:
         """Not *running …* for ever."""
         browser.page.keyboard.press("r")
