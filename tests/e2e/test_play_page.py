@@ -185,6 +185,17 @@ class TestPlaying:
         at(browser, 1)
         assert dict(browser.ask("() => play.marking()"))["Table.Waits"] == "2`ph(1)"
 
+    def test_a_marking_can_be_typed_as_it_stands_to_be_changed(self, browser: Page) -> None:
+        """`{x=~1.5}` as it is shown is no CPN ML: `=~` is one operator."""
+        field = browser.ask("""() => {
+            const { marking, position } = play.page, held = position.markings[0];
+            position.markings[0] = '1`{x=~1.5,s="a=~b\\nc"}';
+            marking.choose(0);
+            position.markings[0] = held;
+            return marking.change.input.value;
+        }""")
+        assert field == '1`{x= ~1.5,s="a=~b\\nc"}'
+
     def test_expressions_are_evaluated(self, browser: Page) -> None:
         browser.page.get_by_role("tab", name="Evaluate").click()
         field = browser.page.get_by_label("Expression in CPN ML")
