@@ -174,7 +174,8 @@ class TestRivetingCell:
             follow.click()
         seen = """() => {
           const { code, run } = replay.page, view = code.view.getBoundingClientRect();
-          const inside = (m) => m.getBoundingClientRect().top >= view.top - 1 && m.getBoundingClientRect().top < view.bottom;
+          const top = (m) => m.getBoundingClientRect().top;
+          const inside = (m) => top(m) >= view.top - 1 && top(m) < view.bottom;
           return [run.programs.files[code.shown].name, [...document.querySelectorAll('.mark.chosen')].some(inside)];
         }"""
         select = """([name, jump]) => {
@@ -207,7 +208,8 @@ class TestRivetingCell:
           page.watch.add(i);
           prototype.fillText = own;
           const { history } = page.watch.places.get(i);
-          const values = history.map(({ count, only }) => (count ? page.course.texts[page.course.tokens.text[only]] : ""));
+          const { texts, tokens } = page.course;
+          const values = history.map(({ count, only }) => (count ? texts[tokens.text[only]] : ""));
           page.watch.remove(i);
           return [said, values];
         }""")

@@ -23,6 +23,7 @@ from typing import Any
 from pn2code import pipeline
 from pn2code.base.conditioning import condition_text
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import beginning
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import INPUT
@@ -165,6 +166,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         examine=examine,
         inputs=options.input,
         kept=options.kept,
+        stage=beginning,
     )
     if generated is None:
         return None
@@ -176,6 +178,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         return None
     folder = options.out / "program"
     write(folder, generated.files)
+    beginning("compiling the supervisor")
     program = build.build(folder, generated.files, d, target="supervisor.traced")
     if program is None:
         return None
