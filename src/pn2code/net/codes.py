@@ -291,8 +291,9 @@ INITIAL_INSTANCE = register(
     "initial-marking-instance",
     "an initial marking uses the number of the page instance",
     "In arcs, guards, delays and code segments `inst ()` is the number of the page instance. When CPN Tools makes the "
-    "initial marking it has another value, the same for all instances of a page: mostly their number and 1. In pn2code "
-    "it is the number of the instance there, too.",
+    "initial marking it has another value, the same for all instances of a page: 1 more than the number of instances "
+    "of the page of the place that it made before, in an order that depends on how the net was opened and changed. In "
+    "pn2code it is the number of the instance there, too.",
 )
 SPACE_NAME = register(
     "state-space-name",
