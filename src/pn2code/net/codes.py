@@ -205,8 +205,8 @@ DECLARATION_INSIDE = register(
     "an inscription declares something other than a value",
     "CPN Tools looks for the variables of an arc inscription, a guard or a priority by itself, and of declarations it "
     "knows `val` only: at `let fun f x = x + 1 in f n end` it ends with `InternalError: Illegal FunDec`, and the page "
-    "cannot be checked. In declarations, code segments, time inscriptions of transitions and initial markings all "
-    "declarations are possible.",
+    "cannot be checked. In code segments, time inscriptions of transitions and initial markings all declarations but "
+    "`open` are possible: there it ends with `Uncaught Exception: Compile`.",
 )
 LOCAL_NAME = register(
     "local-name-of-variable",
