@@ -83,8 +83,8 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
         if found.unfolded.is_alone:
             return "" if found.knows_whole else f"{_why(found, counts)}."
         rest = (
-            "What is said of single markings is about those that were seen; what the unfolded net tells is about all "
-            "reachable ones."
+            "Nodes, and tables of bounds, dead markings and transitions, are those of the part that was seen; what the "
+            "unfolded net tells is about all reachable markings."
         )
     return f"{_why(found, counts)}. {endless(net, found)}{rest}"
 
