@@ -108,8 +108,10 @@ BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
 """Where arcs from one place share variables: nothing is wrong with the net."""
-DECLARES = re.compile(r"InternalError: Illegal \S+Dec")
+DECLARES = re.compile(r"InternalError: Illegal \S+Dec|Uncaught Exception!: Compile")
 """Where an inscription declares something other than a value."""
+LISTS = "InternalError: fun parse_guarditems"
+"""Where a guard is a list that an operator makes."""
 REPEATS = "InternalError: fun get_vids"
 """Where one side of a guard equation has a variable twice."""
 
@@ -157,9 +159,10 @@ class Seen:
         if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             said = SHARED_WARNING in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
-        if wrong and all(e["message"].startswith(REPEATS) for e in wrong):
-            said = "guard-equation-repeats" in self.codes
-            return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
+        for message, code in ((REPEATS, "guard-equation-repeats"), (LISTS, "guard-list-operator")):
+            if wrong and all(e["message"].startswith(message) for e in wrong):
+                said = code in self.codes
+                return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(DECLARES.match(e["message"]) for e in wrong):
             said = "declaration-in-inscription" in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])

@@ -121,6 +121,7 @@ class Elaborator(InscriptionTexts):
         )
         self._code_segments = CodeSegments(self._ctx, self._expressions, self._variables.scope)
         self._repeats = Repeats()
+        self._beside = 0
         self._library: set[str] = set()
         self._from_library: set[str] = set()
         self._colsets = Colsets(self._ctx, self._declare, weakly(self._plain), weakly(self._fold))
@@ -228,7 +229,8 @@ class Elaborator(InscriptionTexts):
         self._ctx.tainted = False
         asks = self._instances.asks(changed)
         before_it = dict(self._ctx.top.values) if asks else {}
-        with self._instances.on_page(asks):
+        computes = not asks and not self._beside and self._instances.may_ask(changed)
+        with self._instances.on_page(asks or computes):
             build = self._declare.declare(changed)
         if self._ctx.errors == before and not self._ctx.tainted:
             self._ctx.resolve_pending()
@@ -248,6 +250,12 @@ class Elaborator(InscriptionTexts):
         self._variables.meet(declared_by(changed), dec.span)
         self._variables.hide(declared_by(changed), dec.span)
         made = build()
+        if computes:
+            made = self._instances.at_opening(made, self._made)
+            if self._ctx.errors > before:
+                self._break(declared_by(changed), types_declared_by(changed))
+                break_modules(changed, self._ctx.top)
+                return
         if not asks:
             self._made += made
         for weak in self._ctx.weak:
@@ -363,9 +371,11 @@ class Elaborator(InscriptionTexts):
         before = self._d, self._ctx.d, self._ctx.errors
         result = Aside()
         self._d = self._ctx.d = d
+        self._beside += 1
         try:
             yield result
         finally:
+            self._beside -= 1
             result.declarations = tuple(self._made[made:])
             result.globals = {
                 n: e.symbol
@@ -402,7 +412,12 @@ class Elaborator(InscriptionTexts):
 
         def work() -> tuple[int, core.Exp] | None:
             exp = self._parse(text)
-            return None if exp is None else self._inscriptions.plain(exp, types, what)
+            if exp is None:
+                return None
+            before = self._ctx.errors
+            found = self._inscriptions.plain(exp, types, what, on_page=True)
+            bound = None if found is None else (found[0], self._instances.bound(found[1]))
+            return bound if self._ctx.errors == before else None
 
         return self._border(text, work)
 

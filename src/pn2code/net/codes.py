@@ -205,8 +205,8 @@ DECLARATION_INSIDE = register(
     "an inscription declares something other than a value",
     "CPN Tools looks for the variables of an arc inscription, a guard or a priority by itself, and of declarations it "
     "knows `val` only: at `let fun f x = x + 1 in f n end` it ends with `InternalError: Illegal FunDec`, and the page "
-    "cannot be checked. In declarations, code segments, time inscriptions of transitions and initial markings all "
-    "declarations are possible.",
+    "cannot be checked. In code segments, time inscriptions of transitions and initial markings all declarations but "
+    "`open` are possible: there it ends with `Uncaught Exception: Compile`.",
 )
 LOCAL_NAME = register(
     "local-name-of-variable",
@@ -291,8 +291,9 @@ INITIAL_INSTANCE = register(
     "initial-marking-instance",
     "an initial marking uses the number of the page instance",
     "In arcs, guards, delays and code segments `inst ()` is the number of the page instance. When CPN Tools makes the "
-    "initial marking it has another value, the same for all instances of a page: mostly their number and 1. In pn2code "
-    "it is the number of the instance there, too.",
+    "initial marking it has another value, the same for all instances of a page: 1 more than the number of instances "
+    "of the page of the place that it made before, in an order that depends on how the net was opened and changed. In "
+    "pn2code it is the number of the instance there, too.",
 )
 SPACE_NAME = register(
     "state-space-name",

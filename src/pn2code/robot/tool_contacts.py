@@ -27,7 +27,7 @@ def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iter
             for other in map(glob.escape, kind.holders):
                 yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
             for part in gripped:
-                yield from also_of_tools(ContactRule(held, part, PART_CONTACT, grips=True), tools)
+                yield from also_of_tools(ContactRule(held, part, PART_CONTACT, "tool"), tools)
 
 
 def end_links(robot: CellRobot) -> Iterator[str]:

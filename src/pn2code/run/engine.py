@@ -34,6 +34,7 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.led_contacts import LedContact
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
@@ -464,7 +465,9 @@ class Engine:
         }
         calm = [name for name, plates in turns.items() if not plates]
         turning = frozenset[str]().union(*turns.values())
-        verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning, self._leads_to)
+        verdict = self.monitor.check(
+            t, joints, self.activity, kinds, calm, turning, lambda led: self._leads_to(led, joints)
+        )
         self.record.sample(verdict)
         for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
@@ -480,10 +483,10 @@ class Engine:
             raise CellStoppedError(f"{why}; {doings(self.robots)}")
         self._expect_slow(t, joints)
 
-    def _leads_to(self, robot: str, part: str) -> bool:
-        """Whether the line or arc that a robot is on leads to a part, or away from it."""
-        runner = next(r for r in self.robots if r.name == robot)
-        return self.around.leads_to(runner, part)
+    def _leads_to(self, contact: LedContact, joints: Mapping[str, Array]) -> bool:
+        """Whether the line or arc that a robot is on leads to a contact, or away from it."""
+        runner = next(r for r in self.robots if r.name == contact.robot)
+        return self.around.leads_to(runner, contact, joints)
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pn2code import pipeline
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import beginning
 from pn2code.base.kept_answers import KeptAnswers
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
@@ -99,6 +100,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         examine=examine,
         inputs=options.input,
         kept=options.kept,
+        stage=beginning,
     )
     if generated is None:
         return None
@@ -110,6 +112,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         return None
     folder = options.out / "program"
     write(folder, generated.files)
+    beginning("compiling the supervisor")
     program = build.build(folder, generated.files, d, target="supervisor.traced")
     if program is None:
         return None

@@ -68,8 +68,8 @@ class Ending:
         least, most: ns, over all runs in which each command takes its planned time and everything else none; None: not
             known, or there is no most.
         fastest, slowest: such runs, if they were wanted.
-        held_up: ns, by how much the slowest run may be faster than `most`, as in it what ends within a millisecond of
-            each other ends the other way round.
+        held_up: ns, by how much all runs may be faster than `most`, as in the slowest one what ends within a
+            millisecond of each other ends the other way round, or a late answer, or a script, stops it.
     """
 
     places: tuple[str, ...]
@@ -108,8 +108,8 @@ class Cycle:
     Args:
         endings: by final places; [] if no end was found.
         why: why they are not known; "": they are.
-        repeats: the transitions of a repetition that takes time and after which the cell can come to its end; so there
-            is no longest cycle.
+        repeats: the transitions of a repetition that takes time and after which the cell can come to its end, with
+            nothing that stops it; so there is no longest cycle.
         at_least: ns, however late anybody is, if no command takes less than its time.
         at_most: ns, in whatever order things end, if no command takes more than its time.
         others: what runs may do that do not come to the end.
@@ -165,10 +165,16 @@ class Cycle:
             return self._bounded_within(limit)
         if self.why or self.most is None:
             # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
-            return "unknown", self.why or "there is no longest cycle"
+            stops = [f"there is no longest cycle, but {x}" for x in self.ends]
+            return "unknown", self.why or [*stops, "there is no longest cycle"][0]
         surely = max(e.most - e.held_up for e in self.endings if e.most is not None)
         if surely - TIE > limit:
             return "no", f"a run takes at least {seconds_down(surely)} s"
+        if self.least is not None and self.least - TIE > limit:
+            return "no", f"no cycle takes less than {seconds_down(self.least)} s"
+        if self.most + TIE > limit and self.ends:
+            most = f"the longest cycle takes no more than {seconds_up(self.most)} s"
+            return "unknown", f"{most}, but {'; '.join(self.ends)}"
         if self.most + TIE > limit:
             return "unknown", f"the longest cycle takes {between(surely, self.most)}"
         return _unless(self.others)

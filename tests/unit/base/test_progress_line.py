@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import threading
 import time
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -36,6 +38,20 @@ def test_nothing_is_written_where_nobody_looks() -> None:
         with line:
             line.say("one")
     assert hidden.getvalue() == pipe.getvalue() == ""
+
+
+def test_a_run_says_how_fast_its_time_goes_by(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, stream = 100.0, Terminal()
+    robot = SimpleNamespace(name="arm", motion=None)
+    engine: Any = SimpleNamespace(now=0.5, activity="", robots=[robot])
+    with Progress(Console(file=stream, force_terminal=True)) as line:
+        monkeypatch.setattr(line, "_clock", lambda: now)
+        line.begun(engine)
+        line.advanced(engine)
+        assert stream.getvalue().endswith("   0.50 s   arm: waits")
+        now, engine.now = 104.0, 30.0
+        line.advanced(engine)
+        assert stream.getvalue().endswith("  30.00 s, 7.5 s a second   arm: waits")
 
 
 def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None:

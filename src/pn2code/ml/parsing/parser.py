@@ -88,10 +88,20 @@ def is_layered(source: SourceText) -> bool:
 
 def odd_declaration(source: SourceText) -> str:
     """The word of the first declaration in an expression that is not `val`; "" if there is none."""
+    return _first(source, _DECLARING)
+
+
+def opens(source: SourceText) -> bool:
+    """Whether an expression opens a structure, however deep inside."""
+    return "open" in source.text and bool(_first(source, frozenset({"OPEN"})))
+
+
+def _first(source: SourceText, kinds: frozenset[str]) -> str:
+    """The first word of these kinds that stands behind a `let`; "" if there is none."""
     if "let" not in source.text:
         return ""
     tokens = tokenize(source, Diagnostics()) or []
-    return next((t.text for t in tokens if t.kind in _DECLARING), "")
+    return next((t.text for t in tokens if t.kind in kinds), "")
 
 
 _DECLARING = frozenset(
