@@ -52,6 +52,7 @@ class Numbers:
         if type(value) is tuple:
             return self.record(tuple(map(self.of, value)))
         kind = type(value)
+        # What is a `Data` has an argument.
         if kind not in (bool, int, str) and not (kind is Data and value.argument is None):  # type: ignore[union-attr]
             raise NotNumberedError
         key = kind, value  # True is not 1

@@ -363,10 +363,11 @@ class Program(Reaching):
                 fields = dict(
                     zip((label for label, _ in t.fields), slots[at : at + n], strict=True)
                 )
+                # The slots of parameters are values, not declared functions of many types.
                 argument: Val = RecordVal(fields, substitute(t, head.types))  # type: ignore[arg-type]
                 at += n
             else:
-                argument = slots[at]  # type: ignore[assignment]
+                argument = slots[at]  # type: ignore[assignment]  # likewise
                 at += 1
             assert isinstance(remaining, core.Lambda)
             if len(remaining.rules) > 1:

@@ -198,7 +198,7 @@ class Colsets:
         high = self._constant(texts[1], types, "upper bound")
         if low is None or high is None:
             return None
-        if low > high:  # type: ignore[operator]
+        if low > high:  # type: ignore[operator]  # both are of one of the types
             self._ctx.error(
                 codes.COLSET_RANGE,
                 f"lower bound {_shown(low)} of colour set `{spec.name}` is above the upper bound {_shown(high)}",

@@ -143,6 +143,7 @@ class Evaluator:
 
     def value(self, exp: core.Exp, binding: Mapping[Symbol, Value] | None = None) -> Value:
         """The value of an expression over net variables."""
+        # A task that ends gives a value.
         return self.evaluate(exp, {symbol.uid: value for symbol, value in (binding or {}).items()})  # type: ignore[no-any-return]
 
     def evaluate(self, exp: core.Exp, environment: Environment) -> Any:
@@ -165,7 +166,7 @@ class Evaluator:
 
     def apply(self, function: Value, argument: Value) -> Value:
         """The value of a function at an argument."""
-        return self.run(self.call(function, argument))  # type: ignore[no-any-return]
+        return self.run(self.call(function, argument))  # type: ignore[no-any-return]  # tasks give values
 
     def run(self, step: Step) -> Any:
         """Runs a step to its end.
@@ -439,7 +440,7 @@ _STEPS: dict[type, Callable[[Evaluator, Any, Environment], Step]] = {
 def _in_order(exp: core.RecordExp, values: list[Value]) -> Value:
     """A record from the values of its fields as written."""
     written = exp.fields
-    fields = exp.type.fields  # type: ignore[union-attr]
+    fields = exp.type.fields  # type: ignore[union-attr]  # a record has the type of one
     for i in range(len(written)):
         if written[i][0] != fields[i][0]:
             break
@@ -452,7 +453,7 @@ def _in_order(exp: core.RecordExp, values: list[Value]) -> Value:
 def _field(exp: core.Select, record: Any) -> Value:
     assert isinstance(exp.record.type, TRecord)
     labels = [label for label, _ in exp.record.type.fields]
-    return record[labels.index(exp.label)]  # type: ignore[no-any-return]
+    return record[labels.index(exp.label)]  # type: ignore[no-any-return]  # a record holds values
 
 
 def _construct(constructor: core.Constructor) -> Value:

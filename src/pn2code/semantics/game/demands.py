@@ -19,7 +19,7 @@ Found = dict[int, Value]
 """A binding while it is searched for: `uid` of the symbol -> value."""
 
 
-class wanting(running):  # noqa: N801
+class wanting(running):  # noqa: N801 - a context manager reads as a word
     """As `running`, for what an input arc wants."""
 
     __slots__ = ("arc", "demands", "t")
