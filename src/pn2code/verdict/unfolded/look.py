@@ -9,8 +9,8 @@ First the sizes of its state space, then whether a marking is dead and the prope
 tokens places hold. What the exploration has seen must agree with it.
 
 It is asked only where its answers are about the same state space: nothing is timed or drawn at random, nobody writes
-references or files, no inscription raises an exception whatever is asked first, there are no priorities, inhibitor and
-reset arcs, and no code segments.
+references or files (code segments neither), no inscription raises an exception whatever is asked first, and there are
+no priorities, inhibitor and reset arcs.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def why_not(net: FlatNet) -> str:
     if len({t.priority for t in net.transitions}) > 1:
         return "its transitions have priorities"
     d = Diagnostics()
-    check(net, d)
+    check(net, d, with_code=True)
     if d.errors:
         return d.errors[0].message
     if nondeterminism.draws(net):
@@ -176,7 +176,7 @@ def _until(interrupted: Callable[[], bool]) -> Deadline:
 def _unfolded(net: FlatNet) -> Unfolding | str:
     """The net unfolded, or why it cannot be asked."""
     d = Diagnostics()
-    unfolding = unfold(net, d)
+    unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
         return d.errors[0].message
     if unfolding.faults:
