@@ -59,6 +59,8 @@ _LEAST_S, _MOST_S = 10.0, 300.0
 """Where time is not limited: half of what the exploration took, within these bounds."""
 _UNFOLDING = 0.35
 """Of the time, for unfolding: where colours do not end it would go on for ever."""
+_ASKING = 0.9
+"""Of what is left then, for all questions; the rest is for telling what is known."""
 _SIZES = 0.4
 _PROPERTIES = 0.7
 _RUNS = 0.3
@@ -149,7 +151,8 @@ def look(
             told={},
             refused=questions.refused,
         )
-        asker = _Asker(program, unfolding, questions, deadline, limits, options, occurred, made)
+        ends = deadline.share(_ASKING)
+        asker = _Asker(program, unfolding, questions, ends, limits, options, occurred, made)
         with suppress(TimeIsOverError), _until(options.interrupted).enforced():
             asker.ask_all()
             asker.find_runs(opened)
