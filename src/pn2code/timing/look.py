@@ -43,6 +43,7 @@ PLANNED = "each command takes its planned time, and messages and the supervisor 
 AT_ONCE = "sensors and people answer at once"
 CLOCK_RUNS = "a unit of the net's time is a second (`--time-scale 1`)"
 _HALTS = "a script may come to where none of its transitions is possible, and stop the cell"
+RAISES = "a condition of a script may raise an exception, and stop the cell"
 _OPEN = {
     "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
@@ -303,6 +304,8 @@ class _Look:
         yield from late
         if search.halts:
             yield _HALTS
+        if search.may_raise():
+            yield RAISES
         if search.is_endless and not search.cycle:
             yield ENDLESS
         if not search.ends and not search.why:
