@@ -27,7 +27,7 @@ from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
-from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.answers import ENDLESS, NO_END, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import TimedPath, TimedPaths, longest_inside
@@ -309,7 +309,7 @@ class _Look:
         if search.is_endless and not search.cycle:
             yield ENDLESS
         if not search.ends and not search.why:
-            yield "no run comes to its end"
+            yield NO_END
 
     def _two_messages(self) -> Iterator[str]:
         for name in self.search.overfull():

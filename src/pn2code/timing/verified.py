@@ -144,6 +144,12 @@ class _Judge:
         self.control, self.opened, self.asked = control, opened, asked
         self.times, self.measured, self.folder = times, measured, folder
 
+    @property
+    def _overflow(self) -> str:
+        """Why no run is known to come so far; "": nothing is why."""
+        found = self.control.overflow if self.control is not None else ""
+        return found and f"a run may stop before it: {found}"
+
     def answer(self, a: Answer) -> Answer:
         """The answer in seconds; another one stays as it is."""
         if not is_timed(a):
@@ -183,7 +189,7 @@ class _Judge:
                 found = self._bounded(a, one, layout, (first, second), limit)
             shown = seen_too_long(one, first, second, limit)
             if shown is not None:
-                return self._shown(a, one, shown)
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
             own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
             if own is None or found.answer == "yes":
                 return found
@@ -195,7 +201,7 @@ class _Judge:
         if wait.ns is None or wait.ns + TIE > limit:
             shown = too_long(one, wait, (first, second), limit, over)
             if shown is not None:
-                return self._shown(a, one, shown)
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
             return open_(why_open(one, cycle, wait, (first, second), limit))
         others = [self.control.stops] if self.control is not None and self.control.stops else []
         others += layout.cycle.ends
