@@ -10,6 +10,7 @@ import pytest
 
 from pn2code.diagnostics import Origin
 from pn2code.properties.meaning import Atom, Property, Response
+from pn2code.semantics.values.data import Data, MlException
 from pn2code.timing import verified
 from pn2code.timing.answers import Cycle
 from pn2code.timing.doings import NS
@@ -59,7 +60,7 @@ def judge(
         written.append(layouts[measured.index(one)].name)
         return Answer(a.about, "no", value=found.ns / NS, cell=True)
 
-    def event(_self: Any, _one: Any, formula: Atom) -> Any:
+    def event(_self: Any, _a: Any, _one: Any, formula: Atom) -> Any:
         return lambda mark: mark == formula.number
 
     monkeypatch.setattr(verified._Judge, "_shown", shown)
@@ -103,3 +104,25 @@ def test_a_supervisor_that_has_no_room_may_stop_before(
     found = one.answer(asked("5"))
     assert found.answer == answer
     assert answer == "no" or check.says in found.why
+
+
+def test_a_condition_that_raises_an_exception_has_no_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """`fires(Again, {1 div n = 1})` was an internal error."""
+
+    def raises(*_: Any) -> bool:
+        raise MlException(Data("Div", 0))
+
+    monkeypatch.setattr(verified, "Game", lambda *_, **__: None)
+    monkeypatch.setattr(verified._Judge, "_is", raises)
+    graph = SimpleNamespace(
+        elements=[SimpleNamespace(number=0, is_step=False, owner=0)],
+        partition=SimpleNamespace(net=None),
+        storage={},
+    )
+    one: Any = SimpleNamespace(search=SimpleNamespace(graph=graph))
+    none: Any = None
+    judge = verified._Judge(None, none, none, none, (), Path())
+    found = judge._event(asked("5"), one, FIRST)
+    assert found == "its condition on a binding raised the exception `Div`"
