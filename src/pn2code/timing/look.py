@@ -32,7 +32,7 @@ from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import TimedPath, TimedPaths, longest_inside
 from pn2code.timing.search import TIE, Search
-from pn2code.timing.unstopped import Unstopped, longest_owed
+from pn2code.timing.unstopped import Unstopped
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.control_types import CellProgram
@@ -338,9 +338,8 @@ class _Look:
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
         for owner in self.graph.partition.owners:
-            place = self.graph.running.owing.get(owner.index)
-            if place is not None:
-                yield owner.phrase, longest_owed(self.search, place)
+            if owner.index in self.runs.owed:
+                yield owner.phrase, self.runs.owed[owner.index]
 
     def _owed_anyhow(self) -> Iterator[tuple[str, int | None]]:
         """The same in whatever order things end: no more than this."""
