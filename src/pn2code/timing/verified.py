@@ -114,7 +114,9 @@ def with_durations(
                 answers.append(judge.answer(a))
     except TimeIsOverError:
         # What was found out by then stays known.
-        times = times or Times((), 0.0, clause("seconds"))
+        config = opened.config
+        timeout = config.supervisor.reply_timeout_s if config is not None else 0.0
+        times = times or Times((), timeout, clause("seconds"))
         for a in said.answers[len(answers) :]:
             answers.append(replace(a, why=clause("seconds")) if is_timed(a) else a)
     said = replace(said, answers=tuple(answers), durations=Durations(times))
