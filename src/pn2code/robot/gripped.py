@@ -13,6 +13,7 @@ from dataclasses import field
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import PATHS, MotionKind, turned_by
 from pn2code.robot.hulls import Hull
 from pn2code.robot.laid import BEYOND
 from pn2code.robot.parts_table import PartKind
@@ -62,17 +63,24 @@ class End:
 
 @frozen(eq=False)
 class MoveEnds:
-    """Both ends of a move. `known`: what was asked about them, and the answers."""
+    """Both ends of a move.
+
+    Args:
+        is_path: whether it is a line or an arc; turning: the turntables, belts and other axes that it moves.
+        known: what was asked about it, and the answers.
+    """
 
     robot: CellRobot
     ends: tuple[End, ...]
+    is_path: bool
+    turning: frozenset[str]
     known: dict[object, bool] = field(default_factory=dict)
 
     @staticmethod
-    def of(robot: CellRobot, tool: str, path: Trajectory) -> MoveEnds:
+    def of(robot: CellRobot, tool: str, path: Trajectory, kind: MotionKind = "lin") -> MoveEnds:
         """Of a move with a tool that is changed, or without ("")."""
         joints = path.on_way(np.array([0.0, _NEAR_END, 1.0 - _NEAR_END, 1.0]))
-        frames = [robot.T_world_base @ robot.kinematics.forward(q) for q in joints]
+        frames = robot.T_world_base @ robot.kinematics.forward_many(joints)
         back = inverse(robot.kinematics.T_flange_tcp)
         further = [
             back @ own.T_flange_tcp
@@ -87,7 +95,7 @@ class MoveEnds:
             outward = way / length if length > 1e-9 else np.zeros(3)
             points = (grip[:3, 3], *((frame @ own)[:3, 3] for own in further))
             ends.append(End(joints[end], grip, points, outward))
-        return MoveEnds(robot, tuple(ends))
+        return MoveEnds(robot, tuple(ends), kind in PATHS, turned_by(robot, path))
 
     def is_at(self, kind: PartKind, frame: Array, less: float = 0.0) -> bool:
         """Whether one of them is at a part that stands there."""

@@ -7,7 +7,9 @@
     led.is_led(contact, ends, (carried, other), stands)
 
 On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind; a part
-that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is.
+that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is. So
+what rides on a turntable, belt or other axis that moves may touch of what stands only that on which it stands before or
+afterwards.
 Runs, the proofs over all runs and the search for places of arms ask the same question, about one move and one contact;
 so it does not matter what else is there.
 """
@@ -78,18 +80,34 @@ class LedContacts:
         stands: Callable[[str], Array],
         less: float = 0.0,
     ) -> bool:
-        """Whether a contact that rules permit is none to which the robot's line or arc leads.
+        """Whether a contact that is permitted as such is none to which the robot's move leads.
 
         Args:
-            ends_of: of what a robot does, by name; None: it is on no line or arc.
+            ends_of: of what a robot does, by name; None: it stands.
             parts: by the names that they have in contacts; stands, less: as of `is_led`.
         """
-        contact = self.between(a, b)
+        rides = parts[a].plate if a in parts else ""
+        contact = self.between(a, b) or self.of_rider(a, b, rides)
         ends = None if contact is None else ends_of(contact.robot)
         if contact is None or ends is None:
             return False
+        if rides:
+            if rides not in ends.turning or b in ends.turning:
+                return False  # it stands, or goes on to a belt that runs as one with its own
+        elif not ends.is_path:
+            return False
         touching = parts.get(contact.part), parts.get(contact.other)
         return not self.is_led(contact, ends, touching, stands, less)
+
+    def of_rider(self, a: str, b: str, plate: str) -> LedContact | None:
+        """That of a part on a turntable, belt or other axis ("": on none) with what stands; None: rules permit it."""
+        if not plate or any(
+            fnmatch.fnmatchcase(one, rule.a) and fnmatch.fnmatchcase(other, rule.b)
+            for rule in self._rules
+            for one, other in ((a, b), (b, a))
+        ):
+            return None
+        return LedContact(plate.partition("/")[0], a, b)
 
     def is_led(
         self,
@@ -145,9 +163,11 @@ class LedContacts:
             assert other is not None and frame is not None, "tools grip parts"
             return end.is_at(_work(other), frame, less)
         at = carried_to(ends.robot, end.q, carried)
-        ground = Ground.of(self._cell)
-        pieces = ground.placed(_work(carried), at)
-        if is_laid(pieces, end.outward, self._tops(contact.other, other, frame), less):
+        pieces = Ground.of(self._cell).placed(_work(carried), at)
+        tops = self._tops(contact.other, other, frame)
+        if carried.plate:
+            return is_laid(pieces, np.zeros(3), tops, less)
+        if is_laid(pieces, end.outward, tops, less):
             return True
         return contact.other in self._jaws(_work(carried), at, end.outward)
 
