@@ -6,10 +6,11 @@
     led.between("arm/link_4", "pallet")     # None: something else permits it, or nothing does
     led.is_led(contact, ends, (carried, other), stands)
 
-On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind; a part
-that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is. So
-what rides on a turntable, belt or other axis that moves may touch of what stands only that on which it stands before or
-afterwards.
+On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind. A part
+that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is.
+What couples tools may touch the one that is coupled or left, and that one what holds it in its rack. What rides on a
+plate, belt or other axis that moves may touch of what stands only that on which it stands before or afterwards.
+
 Runs, the proofs over all runs and the search for places of arms ask the same question, about one move and one contact;
 so it does not matter what else is there.
 """
@@ -30,7 +31,8 @@ from pn2code.robot.laid import BEYOND, STEPS, is_laid
 from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array
+from pn2code.robot.tools_table import ToolKind
+from pn2code.robot.transforms import Array, matrix_of
 
 
 @frozen
@@ -160,8 +162,7 @@ class LedContacts:
     ) -> bool:
         other, frame = touched
         if carried is None:
-            assert other is not None and frame is not None, "tools grip parts"
-            return end.is_at(_work(other), frame, less)
+            return self._is_at_tool(end, touched, less, ends)
         at = carried_to(ends.robot, end.q, carried)
         pieces = Ground.of(self._cell).placed(_work(carried), at)
         tops = self._tops(contact.other, other, frame)
@@ -170,6 +171,25 @@ class LedContacts:
         if is_laid(pieces, end.outward, tops, less):
             return True
         return contact.other in self._jaws(_work(carried), at, end.outward)
+
+    def _is_at_tool(
+        self,
+        end: End,
+        touched: tuple[Part | None, Array | None],
+        less: float,
+        ends: MoveEnds,
+    ) -> bool:
+        """Whether the tool is at a part, its coupling at a tool that lies there, or the tool in use at its rack."""
+        other, frame = touched
+        if other is None:
+            kind = ends.robot.tools.get(ends.tool)
+            if kind is None or not kind.rack:
+                return False
+            return end.couples(kind, matrix_of(self._cell.places[kind.rack]), less)
+        assert frame is not None, "a part is somewhere"
+        if isinstance(other.kind, ToolKind):
+            return end.couples(other.kind, frame, less)
+        return end.is_at(other.kind, frame, less)
 
     def _tops(self, name: str, part: Part | None, frame: Array | None) -> list[Hull]:
         ground = Ground.of(self._cell)
