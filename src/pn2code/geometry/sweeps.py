@@ -119,7 +119,7 @@ class Sweeper:
         tracks = {x.robot: x for x in near if isinstance(x, Track)}
 
         def ends_of(name: str) -> MoveEnds | None:
-            return tracks[name].ends
+            return tracks[name].ends if name in tracks else None
 
         # What stands on a plate that moves may be touched by nobody else, so it stands where it was.
         def stands(name: str) -> Array:

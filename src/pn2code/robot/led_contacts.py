@@ -43,6 +43,15 @@ class LedContact:
     part: str
     other: str
 
+    @property
+    def owner(self) -> str:
+        """The robot or device of which the other thing is an axis; "": it is none."""
+        return self.other.partition("/")[0] if "/" in self.other else ""
+
+    def is_with(self, ends: MoveEnds | None) -> bool:
+        """Whether the other thing is an axis that its owner moves: nothing may be put on it then."""
+        return bool(self.part) and ends is not None and self.other in ends.turning
+
 
 Touching = tuple[Part | None, Part | None]
 """The part that is carried, and the one that is touched; None: a tool, or a thing of the scene."""
@@ -85,13 +94,17 @@ class LedContacts:
         """Whether a contact that is permitted as such is none to which the robot's move leads.
 
         Args:
-            ends_of: of what a robot does, by name; None: it stands.
+            ends_of: of what a robot or device does, by name; None: it stands, or is not looked at.
             parts: by the names that they have in contacts; stands, less: as of `is_led`.
         """
         rides = parts[a].plate if a in parts else ""
         contact = self.between(a, b) or self.of_rider(a, b, rides)
-        ends = None if contact is None else ends_of(contact.robot)
-        if contact is None or ends is None:
+        if contact is None:
+            return False
+        if not rides and contact.is_with(ends_of(contact.owner)):
+            return True
+        ends = ends_of(contact.robot)
+        if ends is None:
             return False
         if rides:
             if rides not in ends.turning or b in ends.turning:

@@ -184,7 +184,8 @@ class Monitor:
             if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
             led = None if gap.allowed is None else self._contact(gap, kinds, turning)
-            if led is not None and not leads_to(led):
+            moved = turning if gap.kind != "scene" else ()  # the body of a belt stands
+            if led is not None and (led.other in moved or not leads_to(led)):
                 gap = replace(gap, allowed=None)  # nothing is gripped, lifted or put down there
             gaps.append(gap)
             fault = fault or self._collision(gap, t, poses[gap.robot])
@@ -207,7 +208,8 @@ class Monitor:
         """A contact that is permitted only if a move leads to it; None: it is permitted whatever moves."""
         found = self._led.between(gap.a, gap.b)
         if found is not None:
-            return found if kinds.get(found.robot) in PATHS else None
+            is_moved = gap.kind != "scene" and found.other in turning
+            return found if is_moved or kinds.get(found.robot) in PATHS else None
         is_rider = gap.kind == "scene" and gap.plates and gap.a not in gap.plates
         if not is_rider or gap.plates[0] not in turning or gap.b in turning:
             return None  # it stands, or goes on to a belt that runs as one with its own
