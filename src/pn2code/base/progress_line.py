@@ -189,12 +189,12 @@ class Line:
 
 
 @contextmanager
-def told(what: str) -> Iterator[Line]:
+def told(what: str, *, shown: bool = True) -> Iterator[Line]:
     """What may take long and says nothing by itself: a terminal shows from the second second on how long it takes, and
     how far its loops are.
 
     Nothing else is to be printed meanwhile.
     """
-    with Line(first="") as line:
+    with Line(first="", shown=shown) as line:
         line.turn_to(what)
         yield line
