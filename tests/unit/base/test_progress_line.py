@@ -54,6 +54,29 @@ def test_a_run_says_how_fast_its_time_goes_by(monkeypatch: pytest.MonkeyPatch) -
         assert stream.getvalue().endswith("  30.00 s, 7.5 s a second   arm: waits")
 
 
+def test_a_simulation_says_how_much_longer_it_takes_at_most() -> None:
+    now, stream = 100.0, Terminal()
+
+    def said(steps: int, seconds: float) -> str:
+        nonlocal now
+        now += seconds
+        line.update(steps, 0)
+        return stream.getvalue().rpartition("\x1b[K")[2]
+
+    with simulation.ProgressLine(stream=stream, steps=1000, clock=lambda: now) as line:
+        said(0, 5.0)
+        assert said(200, 2.0) == "200 steps   time 0   100 steps/s   8 s left at most"
+    with simulation.ProgressLine(stream=stream, steps=1000, runs=2, clock=lambda: now) as line:
+        said(0, 1.0)
+        said(1000, 10.0)
+        # The steps of the second run are counted anew: the rate was negative.
+        found = "run 2 of 2: 100 steps   time 0   100 steps/s   9 s left at most"
+        assert said(100, 1.0) == found
+    with simulation.ProgressLine(stream=stream, clock=lambda: now) as line:
+        said(0, 1.0)
+        assert said(100, 1.0) == "100 steps   time 0   100 steps/s"
+
+
 def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None:
     now, stream = 100.0, io.StringIO()
     with Line(stream=stream, first="reading", plain=True, clock=lambda: now) as line:
