@@ -30,7 +30,7 @@ class ProgressLine(Line):
         runs: int = 1,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__(shown=shown, stream=stream, clock=clock)
+        super().__init__(shown=shown, stream=stream, plain=True, patient=True, clock=clock)
         self._most, self._runs = steps, runs
         self._last = clock()
         self._last_steps = 0
@@ -40,7 +40,7 @@ class ProgressLine(Line):
 
     def update(self, steps: int, now: int | float) -> None:
         """The run has made so many steps, at this model time."""
-        if not self._shown:
+        if not self.is_heard:
             return
         clock = self._clock()
         if self._begun_at is None:

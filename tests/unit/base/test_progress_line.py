@@ -91,6 +91,19 @@ def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None
     assert stream.getvalue() == "reading\n3 states\ncomparing\n"
 
 
+def test_a_patient_line_leaves_nothing_in_a_pipe_where_all_is_over_soon() -> None:
+    now, stream = 100.0, io.StringIO()
+    with simulation.ProgressLine(stream=stream, steps=9_000, clock=lambda: now) as line:
+        for steps in range(0, 6_000, 500):
+            line.update(steps, 0)
+            now += 1.0
+    assert stream.getvalue() == "5,000 steps   time 0   500 steps/s   8 s left at most\n"
+    with Line(stream=stream, plain=True, patient=True, clock=lambda: now) as line:
+        now += 9.0
+        line.say("1 state")
+    assert stream.getvalue().count("\n") == 1
+
+
 class Telling(Terminal):
     """A terminal that says when something was written that somebody waits for."""
 
