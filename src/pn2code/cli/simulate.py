@@ -197,7 +197,7 @@ def simulate(
     most = _default_steps(opened, until) if steps is None else steps
     line = ProgressLine(
         shown=not (as_json or quiet),
-        steps=0 if most is None or (steps is None and until is not None) else most,
+        steps=most or 0,
         runs=replications or 1,
     )
     with Interrupts() as interrupts, line as progress:
