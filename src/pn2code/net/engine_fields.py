@@ -43,11 +43,12 @@ def misplaced(
         return
     terms = [term for arc in arcs for term in arc.inscription.terms]
     counts = Counter(s for term in terms for s in variables.seen(term.value))
-    known = {s for s, n in counts.items() if n > 1} | _equated(guards, reader)
+    equated = _equated(guards, reader)
+    known = {s for s, n in counts.items() if n > 1} | equated
     for i, value in records:
-        found = {name for name, part in value.fields if known.issuperset(variables.seen(part))}
-        named = [name for name in _moved(value, arcs[i].node.fields) if name in found]
-        if named and len(found) < len(value.fields):
+        parts = {name: variables.seen(part).keys() for name, part in value.fields}
+        named = [x for x in _moved(value, arcs[i].node.fields) if known >= parts[x]]
+        if named and not all(equated >= part for part in parts.values()):  # not a whole token
             yield i, named
 
 

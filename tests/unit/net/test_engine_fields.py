@@ -31,6 +31,7 @@ net Fields
         ("R", "2`({b = j, a = i, c = k})", "1 = j", "empty", "`b`"),
         ("R", "{b = j, a = 1, c = k}", "true", "empty", "`a`"),
         ("R", "{b = j, a = i, c = k}", "true", "{a = i, b = 1, c = 1}", "`a`"),
+        ("R", "{b = j, a = 1, c = 1}", "true", "{a = j, b = 1, c = 1}", "`b` and `a`"),
         ("P", "{2 = j, 1 = i}", "i = 1", "empty", "`1`"),
         ("Z", "{a = j, z = i}", "i = 1", "empty", "`z`"),
         ("R", "{a = i, b = j, c = k}", "i = 1", "empty", ""),
