@@ -93,6 +93,7 @@ class Context:
         weak: types of values that are not generalised; what is unknown in them at the end of the declaration stays so.
         open_records: selectors and open patterns whose record type must be known in the end.
         tyvars: explicit type variables in force, innermost last.
+        written_tyvars: those that no declaration around them binds, and where they are written.
         generic_base: number of type variables quantified around the declaration being translated.
         datatypes: all datatypes by name.
         colsets: by name; None for those with errors.
@@ -121,6 +122,7 @@ class Context:
     open_records: list[tuple[Meta, Span]] = field(default_factory=list)
     weak: list[Ty] = field(default_factory=list)
     tyvars: list[dict[str, Meta]] = field(default_factory=list)
+    written_tyvars: list[tuple[str, Meta, Span]] = field(default_factory=list)
     generic_base: int = 0
     datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)
     colsets: dict[str, Colset | None] = field(default_factory=dict)
