@@ -25,7 +25,7 @@ const MOST = 200;
 export function heldText({ count, only }, course) {
   if (!count) return "";
   if (only < 0) return `${count} tokens`;
-  const text = course.texts[course.tokens.text[only]].replace(/\s+/g, " ");
+  const text = course.texts[course.tokens.text[only]].replace(/\s+/g, " ").replace(/^\((~[\d.e~]+)\)$/i, "$1");
   return count === 1 ? text : `${count}\`${text}`;
 }
 
@@ -38,7 +38,8 @@ export function heldText({ count, only }, course) {
 export function heldNumbers(history, course) {
   const texts = history.every(({ count }) => count <= 1) ? history.map((row) => heldText(row, course)) : [];
   const isValue = texts.length > 0 && texts.every((text) => !text || NUMBER.test(text));
-  const numbers = isValue ? texts.map((text) => (text ? Number(text.replace(/~/g, "-")) : NaN)) : history.map((row) => row.count || NaN);
+  const value = (/** @type {string} */ text) => (text ? Number(text.replace(/~/g, "-")) : NaN);
+  const numbers = isValue ? texts.map(value) : history.map((row) => row.count || NaN);
   return { numbers, isValue };
 }
 

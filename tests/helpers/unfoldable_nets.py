@@ -12,6 +12,8 @@ from random import Random
 
 from helpers.random_properties import Author
 from pn2code.net.flat import FlatNet
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.exploring.result import Exploration
 
 _HEAD = """    net Random
       standard
@@ -20,9 +22,9 @@ _HEAD = """    net Random
       colset N = int with 0..3;
       colset AI = product A * I;
       colset AN = record a : A * n : N;
-      var x, y : A;
+      var x, y, z : A;
       var j, k : I;
-      var n, m : N;
+      var n, m, l : N;
       fun turned a0 = a1 | turned a1 = a2 | turned a2 = a0;
       fun next (i q) = if q = 3 then i 1 else i (q + 1);
 """
@@ -39,6 +41,11 @@ _PUT = {
     "I": ("(next j)", "(next k)"), "N": ("(3 - n)", "((n + m) mod 4)"), "UNIT": ("()",),
     "AI": ("(turned x, j)", "(y, next k)"), "AN": ("{a = turned x, n = n}", "{a = y, n = (m + 1) mod 4}"),
 }  # fmt: skip
+_OF_CODE = {
+    "A": ("x", "z", "if x = a0 then a2 else turned x"),
+    "N": ("n", "l", "if n = 0 then 3 else n - 1"),
+}
+"""Colour set: what a code segment reads, what it gives, and how."""
 _GUARDS = (
     "[n < m]", "[x <> y]", "[n <> 2]", "[x = a1 orelse n = 0]", "[j <> k]", "[m = 3 - n]", "[x = turned y]",
 )  # fmt: skip
@@ -57,10 +64,17 @@ def unfoldable_net(r: Random) -> str:
         guard = f" guard {r.choice(_GUARDS)}" if r.random() < 0.3 else ""
         lines.append(f"      trans T{i}{guard}")
         taken = r.sample(list(places), min(len(places), r.randint(1, 2)))
-        for p in taken:
-            lines.append(f"        in {p} : {_text(r, _TAKEN[places[p]], _CONSTANTS[places[p]])}")
+        read = {p: _text(r, _TAKEN[places[p]], _CONSTANTS[places[p]]) for p in taken}
+        given = {
+            kind: v for kind, v in _OF_CODE.items() if v[0] in read.values() and r.random() < 0.4
+        }
+        for variable, result, action in [*given.values()][:1]:
+            code = f"code input ({variable}); output ({result}); action ({action})"
+            lines.append(f"        {code}")
+        lines += [f"        in {p} : {text}" for p, text in read.items()]
         for p in r.sample(list(places), len(taken)):
-            lines.append(f"        out {p} : {_output(r, places[p])}")
+            own = [v[1] for kind, v in [*given.items()][:1] if kind == places[p]]
+            lines.append(f"        out {p} : {own[0] if own else _output(r, places[p])}")
     return "\n".join(lines) + "\n"
 
 
@@ -111,3 +125,12 @@ def _condition(r: Random, net: FlatNet) -> str:
             return f"({_condition(r, net)}) andalso not ({_condition(r, net)})"
         case _:
             return f"({mark} = []) = ({_condition(r, net)})"
+
+
+def nothing_seen(opened: OpenNet) -> Exploration:
+    """An exploration that has come to its limit at once."""
+    fired = (0,) * len(opened.flat.transitions)
+    sizes = (1, 0, 0, 0.0, 0.0, 0.0, 0.0, 1)
+    return Exploration(
+        False, "states", None, *sizes, fired, None, 0, (), None, (), None, ()
+    )  # fmt: skip

@@ -7,29 +7,19 @@ from pathlib import Path
 from random import Random
 
 from helpers import netbuilder
-from helpers.unfoldable_nets import properties_of, unfoldable_net
+from helpers.unfoldable_nets import nothing_seen, properties_of, unfoldable_net
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties.judge import Graph, TooManyNodesError
 from pn2code.semantics.game.errors import GameError
 from pn2code.verdict.asked import gather
-from pn2code.verdict.opened import OpenNet, read
+from pn2code.verdict.opened import read
 from pn2code.verdict.unfolded.look import look, why_not
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.properties import answers, from_unfolded
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.result import Exploration
 
 SEEDS = range(1000, 1012)
-
-
-def nothing_seen(opened: OpenNet) -> Exploration:
-    """An exploration that has come to its limit at once."""
-    fired = (0,) * len(opened.flat.transitions)
-    sizes = (1, 0, 0, 0.0, 0.0, 0.0, 0.0, 1)
-    return Exploration(
-        False, "states", None, *sizes, fired, None, 0, (), None, (), None, ()
-    )  # fmt: skip
 
 
 def test_random_nets(tmp_path: Path) -> None:

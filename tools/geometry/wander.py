@@ -59,7 +59,8 @@ class _Arm:
         motion = self.executor.motion
         assert motion is not None
         if self._ends is None or self._ends[0] is not motion:
-            made = MoveEnds.of(self.executor.robot, self.executor.tool, motion.trajectory)
+            robot, tool = self.executor.robot, self.executor.tool
+            made = MoveEnds.of(robot, tool, motion.trajectory, motion.kind)
             self._ends = motion, made
         return self._ends[1]
 

@@ -15,6 +15,7 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.os_reason import os_reason
+from pn2code.base.progress_line import told
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
@@ -386,8 +387,10 @@ def verify(
                 )
         if looked is None:
             stop(d, form)
-        _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
-        said = conclude(looked, opened, asked, limits, folder, d, checks)
+        with told("drawing the pictures", shown=not quiet) as after:
+            _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
+            after.turn_to("finding what the answers say")
+            said = conclude(looked, opened, asked, limits, folder, d, checks)
         if durations:
             said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
         if in_full:  # sorting all colours and making texts of them takes time, too
@@ -407,7 +410,8 @@ def verify(
                     complete=said.found.seen.markings or said.found.why == "decided",
                     deadline=deadline,
                 )
-            _write_report(said, subject, report_to, d)
+            with told("writing the report", shown=not quiet):
+                _write_report(said, subject, report_to, d)
         if not as_json and not quiet:
             typer.echo(full(said) if in_full else screen(said))
         print_diagnostics(d.sorted(), form)

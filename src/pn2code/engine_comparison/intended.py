@@ -31,7 +31,8 @@ Inscriptions and expressions also differ in the following, each on purpose:
   and again at the start, in an order of its own. `check` warns of them.
 * **A subset's list that is computed** (`subset INT with values`) is refused by the engine; here it is accepted, with a warning.
 * **The values of an `intinf` with bounds** are listed from the lowest by `CS.all ()`; the engine lists them from the highest.
-* **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0.
+* **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0; so it is with an
+  `IntInf.xorb` that is ~(2^30), ~(2^60), ...: `IntInf.xorb (1073741823, ~1)`.
 * **Undetermined type variables** after the value restriction (`val f = rev o rev`) become `unit`; in SML/NJ each becomes a new type.
 * **`ListMergeSort.sort`** and `ArrayQSort.sort` keep the order of equal elements; the engine's may exchange them.
 * **`gamma` and `beta`** of parameters that are not above zero raise `Gamma` and `Beta`; the engine has some number, or draws without end. All other

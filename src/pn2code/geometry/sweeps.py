@@ -26,7 +26,6 @@ from pn2code.geometry.apart import Apart, Found, Standing, spread_of
 from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, Own, gaps, near
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
-from pn2code.robot.active_motion import PATHS
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
 from pn2code.robot.gripped import MoveEnds
@@ -120,8 +119,7 @@ class Sweeper:
         tracks = {x.robot: x for x in near if isinstance(x, Track)}
 
         def ends_of(name: str) -> MoveEnds | None:
-            track = tracks[name]
-            return track.ends if track.leg.kind in PATHS else None
+            return tracks[name].ends if name in tracks else None
 
         # What stands on a plate that moves may be touched by nobody else, so it stands where it was.
         def stands(name: str) -> Array:

@@ -185,7 +185,8 @@ class Track:
         """Both ends of the leg, with the tool in use; they are worked out once."""
         if self._both is None:
             assert self.leg.path is not None
-            self._both = MoveEnds.of(self.shape.robot, self.leg.start.tool, self.leg.path)
+            leg = self.leg
+            self._both = MoveEnds.of(self.shape.robot, leg.start.tool, self.leg.path, leg.kind)
         return self._both
 
     @property

@@ -35,6 +35,7 @@ from pn2code.net.codes import (
 )
 from pn2code.net.declare import Declaring, declared_in
 from pn2code.net.engine_binding import PlaceNode
+from pn2code.net.engine_fields import fields
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
 from pn2code.net.forms import (
     ARC_TIMED,
@@ -322,7 +323,9 @@ class _Checker:
     def node(arc: TypedArc, colsets: Mapping[str, Colset | None]) -> PlaceNode:
         """The place of an arc."""
         colset = colsets[arc.place]
-        return PlaceNode(arc.place, colset is not None and colset.timed)
+        return PlaceNode(
+            arc.place, colset is not None and colset.timed, () if colset is None else fields(colset)
+        )
 
     def warn_of_declarations(self, t: Transition) -> None:
         """Warn of inscriptions that keep CPN Tools from checking the page."""

@@ -280,6 +280,16 @@ ENGINE_CODE = register(
     "else. From a place with a clock it does so with a single arc, too, if the coefficient is not 1: 2`(n + 1). It "
     "accepts the net, and says so only when it is to be simulated. pn2code takes what is written.",
 )
+ENGINE_FIELDS = register(
+    "engine-field-order",
+    "CPN Tools may miss tokens, because the fields of a record are written in another order",
+    "Where a component of a record or tuple is known before a token is looked for (a constant, or a variable that an "
+    "equation of the guard or another arc gives a value), CPN Tools searches for tokens with that component. If the "
+    "arc has the fields in another order than the colour set, {b = j, a = i} with colset R = record a : INT * b : INT, "
+    "it takes one component for another: it finds none or some of the tokens, also in state spaces, or it cannot "
+    "compile the code that it makes. pn2code finds all of them. Written in the order of the colour set both find the "
+    "same.",
+)
 INITIAL_EFFECT = register(
     "initial-marking-effect",
     "an initial marking changes a reference",

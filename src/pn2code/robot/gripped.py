@@ -13,10 +13,12 @@ from dataclasses import field
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import PATHS, MotionKind, turned_by
 from pn2code.robot.hulls import Hull
 from pn2code.robot.laid import BEYOND
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import PART_CONTACT, CellRobot
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.trajectories import Trajectory
 from pn2code.robot.transforms import Array, difference, inverse, matrix_of
 
@@ -29,13 +31,14 @@ class End:
     """One end of a move.
 
     Args:
-        q: the joint position; grip: `T_world_tcp` of the tool that grips.
+        q: the joint position; grip: `T_world_tcp` of the tool that grips; coupling: of what couples it.
         points: of all tool frames, in the world; outward: where the move leads, away from its middle, of length 1, or
             0 if it only turns.
     """
 
     q: Array
     grip: Array
+    coupling: Array
     points: tuple[Array, ...]
     outward: Array
 
@@ -59,20 +62,34 @@ class End:
                 return True
         return False
 
+    def couples(self, kind: ToolKind, place: Array, less: float = 0.0) -> bool:
+        """Whether a tool that lies at a place is coupled or left there, or up to `BEYOND` further straight on."""
+        way, turn = _off(place, self.coupling, self.outward)
+        return way <= kind.tolerance - less and turn <= kind.angle - less
+
 
 @frozen(eq=False)
 class MoveEnds:
-    """Both ends of a move. `known`: what was asked about them, and the answers."""
+    """Both ends of a move.
+
+    Args:
+        tool: in use; "": none.
+        is_path: whether it is a line or an arc; turning: the turntables, belts and other axes that it moves.
+        known: what was asked about it, and the answers.
+    """
 
     robot: CellRobot
     ends: tuple[End, ...]
+    tool: str
+    is_path: bool
+    turning: frozenset[str]
     known: dict[object, bool] = field(default_factory=dict)
 
     @staticmethod
-    def of(robot: CellRobot, tool: str, path: Trajectory) -> MoveEnds:
+    def of(robot: CellRobot, tool: str, path: Trajectory, kind: MotionKind = "lin") -> MoveEnds:
         """Of a move with a tool that is changed, or without ("")."""
         joints = path.on_way(np.array([0.0, _NEAR_END, 1.0 - _NEAR_END, 1.0]))
-        frames = [robot.T_world_base @ robot.kinematics.forward(q) for q in joints]
+        frames = robot.T_world_base @ robot.kinematics.forward_many(joints)
         back = inverse(robot.kinematics.T_flange_tcp)
         further = [
             back @ own.T_flange_tcp
@@ -86,8 +103,8 @@ class MoveEnds:
             length = float(np.linalg.norm(way))
             outward = way / length if length > 1e-9 else np.zeros(3)
             points = (grip[:3, 3], *((frame @ own)[:3, 3] for own in further))
-            ends.append(End(joints[end], grip, points, outward))
-        return MoveEnds(robot, tuple(ends))
+            ends.append(End(joints[end], grip, frame, points, outward))
+        return MoveEnds(robot, tuple(ends), tool, kind in PATHS, turned_by(robot, path))
 
     def is_at(self, kind: PartKind, frame: Array, less: float = 0.0) -> bool:
         """Whether one of them is at a part that stands there."""
@@ -98,13 +115,17 @@ def _is_gripped(kind: PartKind, frame: Array, end: End, less: float) -> bool:
     """Whether a part is where a tool grips it, or further on in the direction of the move."""
     for grip in kind.grips or (None,):
         place = frame if grip is None else frame @ matrix_of(grip)
-        off = place[:3, 3] - end.grip[:3, 3]
-        off = off - min(max(float(off @ end.outward), 0.0), BEYOND) * end.outward
-        if float(np.linalg.norm(off)) > kind.tolerance - less:
-            continue
-        if grip is None or difference(place, end.grip)[1] <= kind.angle - less:
+        way, turn = _off(place, end.grip, end.outward)
+        if way <= kind.tolerance - less and (grip is None or turn <= kind.angle - less):
             return True
     return False
+
+
+def _off(place: Array, frame: Array, outward: Array) -> tuple[float, float]:
+    """How far (m) and how much turned (rad) a place is from a frame that goes straight on."""
+    off = place[:3, 3] - frame[:3, 3]
+    off = off - min(max(float(off @ outward), 0.0), BEYOND) * outward
+    return float(np.linalg.norm(off)), difference(place, frame)[1]
 
 
 def _is_met(hull: Hull, point: Array, outward: Array, around: float) -> bool:

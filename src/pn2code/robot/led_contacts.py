@@ -6,8 +6,11 @@
     led.between("arm/link_4", "pallet")     # None: something else permits it, or nothing does
     led.is_led(contact, ends, (carried, other), stands)
 
-On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind; a part
+On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind. A part
 that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is.
+What couples tools may touch the one that is coupled or left, and that one what holds it in its rack. What rides on a
+plate, belt or other axis that moves may touch of what stands only that on which it stands before or afterwards.
+
 Runs, the proofs over all runs and the search for places of arms ask the same question, about one move and one contact;
 so it does not matter what else is there.
 """
@@ -28,7 +31,8 @@ from pn2code.robot.laid import BEYOND, STEPS, is_laid
 from pn2code.robot.part import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array
+from pn2code.robot.tools_table import ToolKind
+from pn2code.robot.transforms import Array, matrix_of
 
 
 @frozen
@@ -38,6 +42,15 @@ class LedContact:
     robot: str
     part: str
     other: str
+
+    @property
+    def owner(self) -> str:
+        """The robot or device of which the other thing is an axis; "": it is none."""
+        return self.other.partition("/")[0] if "/" in self.other else ""
+
+    def is_with(self, ends: MoveEnds | None) -> bool:
+        """Whether the other thing is an axis that its owner moves: nothing may be put on it then."""
+        return bool(self.part) and ends is not None and self.other in ends.turning
 
 
 Touching = tuple[Part | None, Part | None]
@@ -78,18 +91,38 @@ class LedContacts:
         stands: Callable[[str], Array],
         less: float = 0.0,
     ) -> bool:
-        """Whether a contact that rules permit is none to which the robot's line or arc leads.
+        """Whether a contact that is permitted as such is none to which the robot's move leads.
 
         Args:
-            ends_of: of what a robot does, by name; None: it is on no line or arc.
+            ends_of: of what a robot or device does, by name; None: it stands, or is not looked at.
             parts: by the names that they have in contacts; stands, less: as of `is_led`.
         """
-        contact = self.between(a, b)
-        ends = None if contact is None else ends_of(contact.robot)
-        if contact is None or ends is None:
+        rides = parts[a].plate if a in parts else ""
+        contact = self.between(a, b) or self.of_rider(a, b, rides)
+        if contact is None:
+            return False
+        if not rides and contact.is_with(ends_of(contact.owner)):
+            return True
+        ends = ends_of(contact.robot)
+        if ends is None:
+            return False
+        if rides:
+            if rides not in ends.turning or b in ends.turning:
+                return False  # it stands, or goes on to a belt that runs as one with its own
+        elif not ends.is_path:
             return False
         touching = parts.get(contact.part), parts.get(contact.other)
         return not self.is_led(contact, ends, touching, stands, less)
+
+    def of_rider(self, a: str, b: str, plate: str) -> LedContact | None:
+        """That of a part on a turntable, belt or other axis ("": on none) with what stands; None: rules permit it."""
+        if not plate or any(
+            fnmatch.fnmatchcase(one, rule.a) and fnmatch.fnmatchcase(other, rule.b)
+            for rule in self._rules
+            for one, other in ((a, b), (b, a))
+        ):
+            return None
+        return LedContact(plate.partition("/")[0], a, b)
 
     def is_led(
         self,
@@ -142,14 +175,34 @@ class LedContacts:
     ) -> bool:
         other, frame = touched
         if carried is None:
-            assert other is not None and frame is not None, "tools grip parts"
-            return end.is_at(_work(other), frame, less)
+            return self._is_at_tool(end, touched, less, ends)
         at = carried_to(ends.robot, end.q, carried)
-        ground = Ground.of(self._cell)
-        pieces = ground.placed(_work(carried), at)
-        if is_laid(pieces, end.outward, self._tops(contact.other, other, frame), less):
+        pieces = Ground.of(self._cell).placed(_work(carried), at)
+        tops = self._tops(contact.other, other, frame)
+        if carried.plate:
+            return is_laid(pieces, np.zeros(3), tops, less)
+        if is_laid(pieces, end.outward, tops, less):
             return True
         return contact.other in self._jaws(_work(carried), at, end.outward)
+
+    def _is_at_tool(
+        self,
+        end: End,
+        touched: tuple[Part | None, Array | None],
+        less: float,
+        ends: MoveEnds,
+    ) -> bool:
+        """Whether the tool is at a part, its coupling at a tool that lies there, or the tool in use at its rack."""
+        other, frame = touched
+        if other is None:
+            kind = ends.robot.tools.get(ends.tool)
+            if kind is None or not kind.rack:
+                return False
+            return end.couples(kind, matrix_of(self._cell.places[kind.rack]), less)
+        assert frame is not None, "a part is somewhere"
+        if isinstance(other.kind, ToolKind):
+            return end.couples(other.kind, frame, less)
+        return end.is_at(other.kind, frame, less)
 
     def _tops(self, name: str, part: Part | None, frame: Array | None) -> list[Hull]:
         ground = Ground.of(self._cell)

@@ -148,7 +148,8 @@ class Monitor:
             turning: turntables, belts and other axes that move, as `mill/lift`: what stands on these touches nothing
                 of others either.
             leads_to: whether what a robot does on a line or an arc leads to a contact, or away from it: of parts that
-                its tool grips, and of what the part in its tool can be put on, no other ones are touched.
+                its tool grips, and of what the part in its tool can be put on, no other ones are touched. The same of
+                what stands on a turntable or belt that moves.
         """
         kinds = kinds or {}
         t = float(t)
@@ -182,8 +183,9 @@ class Monitor:
             moves = any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides)
             if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
-            led = None if gap.allowed is None else self._led.between(gap.a, gap.b)
-            if led is not None and kinds.get(led.robot) in PATHS and not leads_to(led):
+            led = None if gap.allowed is None else self._contact(gap, kinds, turning)
+            moved = turning if gap.kind != "scene" else ()  # the body of a belt stands
+            if led is not None and (led.other in moved or not leads_to(led)):
                 gap = replace(gap, allowed=None)  # nothing is gripped, lifted or put down there
             gaps.append(gap)
             fault = fault or self._collision(gap, t, poses[gap.robot])
@@ -199,6 +201,19 @@ class Monitor:
                 warnings.append(gap)
         clearances = None if measured is None else tuple(closest(gaps))
         return Verdict(t, samples, clearances, fault, tuple(warnings))
+
+    def _contact(
+        self, gap: Clearance, kinds: Mapping[str, MotionKind], turning: Collection[str]
+    ) -> LedContact | None:
+        """A contact that is permitted only if a move leads to it; None: it is permitted whatever moves."""
+        found = self._led.between(gap.a, gap.b)
+        if found is not None:
+            is_moved = gap.kind != "scene" and found.other in turning
+            return found if is_moved or kinds.get(found.robot) in PATHS else None
+        is_rider = gap.kind == "scene" and gap.plates and gap.a not in gap.plates
+        if not is_rider or gap.plates[0] not in turning or gap.b in turning:
+            return None  # it stands, or goes on to a belt that runs as one with its own
+        return self._led.of_rider(gap.a, gap.b, gap.plates[0])
 
     def minima(self, phase: str | None = None) -> tuple[Extreme, ...]:
         """The extremes of a phase (None: of the whole run), sorted by measure and robot."""

@@ -93,7 +93,8 @@ class ContactRule:
 
     Args:
         led: it is permitted only with what a move leads to or comes from (`led_contacts`), because `a` is of a tool
-            that grips parts of the kind `b`, or a part that is carried; "": with all that have such names.
+            that grips parts of the kind `b`, of what couples the tool `b`, a tool that `b` holds in its rack, or a part
+            that is carried; "": with all that have such names.
     """
 
     a: str

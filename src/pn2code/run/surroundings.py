@@ -136,7 +136,8 @@ class Surroundings:
         motion, arm = robot.motion, robot.arm
         assert motion is not None and arm is not None, "an arm moves"
         if robot.name not in self._ends or self._ends[robot.name][0] is not motion:
-            self._ends[robot.name] = motion, MoveEnds.of(arm.robot, arm.tool, motion.trajectory)
+            made = MoveEnds.of(arm.robot, arm.tool, motion.trajectory, motion.kind)
+            self._ends[robot.name] = motion, made
         present = self.parts.present
         touching = present.get(contact.part), present.get(contact.other)
         ends = self._ends[robot.name][1]

@@ -98,7 +98,8 @@ def _unless(others: Sequence[str]) -> tuple[Within, str]:
 
 
 ENDLESS = "a run may go on for ever, and never come to its end"
-"""One of `Cycle.others`."""
+NO_END = "no run comes to its end"
+"""Some of `Cycle.others`, of runs that go on."""
 
 
 @frozen
@@ -152,7 +153,7 @@ class Cycle:
     @property
     def ends(self) -> list[str]:
         """Of what runs may do that do not come to the end, that they end before it."""
-        return [x for x in self.others if x != ENDLESS]
+        return [x for x in self.others if x not in (ENDLESS, NO_END)]
 
     def within(self, seconds: float) -> tuple[Within, str]:
         """Whether each run comes to its end within so many seconds, and why not, or why it is not known."""
@@ -160,7 +161,7 @@ class Cycle:
         if self.repeats:
             return "no", "the cell can repeat something for as long as it likes"
         if not self.why and not self.endings:
-            return "no", "no run comes to its end"
+            return "no", NO_END
         if self.why and self.at_most is not None and self.bounded is not None:
             return self._bounded_within(limit)
         if self.why or self.most is None:

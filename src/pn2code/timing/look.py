@@ -27,12 +27,12 @@ from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
-from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.answers import ENDLESS, NO_END, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import TimedPath, TimedPaths, longest_inside
 from pn2code.timing.search import TIE, Search
-from pn2code.timing.unstopped import Unstopped, longest_owed
+from pn2code.timing.unstopped import Unstopped
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.control_types import CellProgram
@@ -43,6 +43,7 @@ PLANNED = "each command takes its planned time, and messages and the supervisor 
 AT_ONCE = "sensors and people answer at once"
 CLOCK_RUNS = "a unit of the net's time is a second (`--time-scale 1`)"
 _HALTS = "a script may come to where none of its transitions is possible, and stop the cell"
+RAISES = "a condition of a script may raise an exception, and stop the cell"
 _OPEN = {
     "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
@@ -303,10 +304,12 @@ class _Look:
         yield from late
         if search.halts:
             yield _HALTS
+        if search.may_raise():
+            yield RAISES
         if search.is_endless and not search.cycle:
             yield ENDLESS
         if not search.ends and not search.why:
-            yield "no run comes to its end"
+            yield NO_END
 
     def _two_messages(self) -> Iterator[str]:
         for name in self.search.overfull():
@@ -335,9 +338,8 @@ class _Look:
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
         for owner in self.graph.partition.owners:
-            place = self.graph.running.owing.get(owner.index)
-            if place is not None:
-                yield owner.phrase, longest_owed(self.search, place)
+            if owner.index in self.runs.owed:
+                yield owner.phrase, self.runs.owed[owner.index]
 
     def _owed_anyhow(self) -> Iterator[tuple[str, int | None]]:
         """The same in whatever order things end: no more than this."""

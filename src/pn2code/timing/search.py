@@ -28,7 +28,7 @@ from pn2code.geometry.graph import CLOCK
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc, TimedPath, TimedPaths
-from pn2code.timing.steps import Kind, kinds, stops
+from pn2code.timing.steps import Kind, kinds, raises, stops
 
 TIE = 1_000_000
 """ns: what ends within this time may end in either order. Results are as accurate as that."""
@@ -90,6 +90,7 @@ class Search:
         self._from: list[tuple[int, int]] = []
         self._kinds = kinds(self.graph)
         self._stopped = stops(self.graph)
+        self._raises = raises(self.graph)
         self._full = frozenset(
             i
             for i, marked in enumerate(self.graph.marked)
@@ -178,12 +179,17 @@ class Search:
 
     def stopped(self) -> set[int]:
         """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, a
-        script may find no transition, or a channel would hold two messages."""
+        script may find no transition or raise an exception, or a channel would hold two messages."""
+        ends = self._full | self._raises
         return self.halting | {
             node
             for node, (state, _, under_way) in enumerate(self.situations)
-            if state in self._full or any(left >= FOREVER // 2 for *_, left in under_way)
+            if state in ends or any(left >= FOREVER // 2 for *_, left in under_way)
         }
+
+    def may_raise(self) -> bool:
+        """Whether a condition of a script may raise an exception."""
+        return any(state in self._raises for state, *_ in self.situations)
 
     def overfull(self) -> list[str]:
         """The channels that may come to hold two messages, which stops the cell."""

@@ -11,7 +11,7 @@ from collections.abc import Collection
 
 from pn2code.base.frozen import frozen
 from pn2code.timing.answers import Cycle, between
-from pn2code.timing.look import Measured
+from pn2code.timing.look import RAISES, Measured
 from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 
@@ -72,6 +72,7 @@ def why_open(one: Measured, cycle: Cycle, wait: Wait, events: tuple[Is, Is], lim
         if surely - TIE <= limit:
             return f"the longest wait takes {between(surely, wait.ns)}"
     stops = [*one.search.faults, *(["a script may stop the cell"] if one.search.halts else [])]
+    stops += [RAISES] if one.search.may_raise() else []
     full = [f"channel `{x}` may come to hold two messages" for x in one.search.overfull()]
     return f"a run may stop before it: {[*stops, *full, *cycle.late, _FAULT][0]}"
 

@@ -42,14 +42,15 @@ class Unstopped:
     def __init__(self, search: Search, timeout: int, most: int = MOST) -> None:
         self.search, self.most = search, most
         self.latest = timeout - TIE
-        self.owing = {
-            owner: place
-            for owner, place in search.graph.running.owing.items()
-            if (ns := longest_owed(search, place)) is None or ns + TIE > timeout
-        }
-        """by owner whose answer may be late: the place that is marked while it owes one"""
+        owing = search.graph.running.owing
+        self.owed = {owner: longest_owed(search, place) for owner, place in owing.items()}
+        """by owner: for how long it owes an answer at most"""
+        self.late = tuple(
+            owing[owner] for owner, ns in self.owed.items() if ns is None or ns + TIE > timeout
+        )
+        """the places that are marked while an answer is owed that may be late"""
         self.stopped = search.stopped()
-        self.is_all = not (self.owing or self.stopped)
+        self.is_all = not (self.late or self.stopped)
 
     def too_long(self, first: Is, second: Is, limit: int) -> Wait | None:
         """How one of these runs waits for longer than `limit` (ns) before it ends or is stopped; None: none does."""
@@ -78,17 +79,19 @@ class Unstopped:
 
     def around(self) -> list[int]:
         """The elements of a repetition that takes time, from which an end can be reached; []: there is none."""
-        return TimedPaths(self._ways.successors, self._ways.ends).around()
+        return self._paths.around()
 
     def longest(self, ends: Collection[int]) -> TimedPath | None:
         """The longest of them to one of these situations; None: there is none, or no longest one."""
-        ways = self._ways
-        nodes = [i for i, s in enumerate(ways.nodes) if s in ends]
-        return TimedPaths(ways.successors, ways.ends).longest(nodes)
+        return self._paths.longest([i for i, s in enumerate(self._ways.nodes) if s in ends])
 
     @cached_property
     def _ways(self) -> _Ways:
         return _Ways(self)
+
+    @cached_property
+    def _paths(self) -> TimedPaths:
+        return TimedPaths(self._ways.successors, self._ways.ends)
 
 
 class _Ways:
@@ -102,7 +105,7 @@ class _Ways:
 
     def __init__(self, runs: Unstopped) -> None:
         self.search, self.latest = runs.search, runs.latest
-        self.places, self.stopped = tuple(runs.owing.values()), runs.stopped
+        self.places, self.stopped = runs.late, runs.stopped
         self.nodes: list[int] = []
         self.successors: list[list[Arc]] = []
         self._since: list[tuple[int, ...]] = []

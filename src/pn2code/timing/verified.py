@@ -20,10 +20,12 @@ from typing import Any
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.graph import Element
 from pn2code.geometry.runs import write
 from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.game.errors import running
+from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.timing.answers import Cycle, Layout, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
@@ -112,7 +114,9 @@ def with_durations(
                 answers.append(judge.answer(a))
     except TimeIsOverError:
         # What was found out by then stays known.
-        times = times or Times((), 0.0, clause("seconds"))
+        config = opened.config
+        timeout = config.supervisor.reply_timeout_s if config is not None else 0.0
+        times = times or Times((), timeout, clause("seconds"))
         for a in said.answers[len(answers) :]:
             answers.append(replace(a, why=clause("seconds")) if is_timed(a) else a)
     said = replace(said, answers=tuple(answers), durations=Durations(times))
@@ -144,6 +148,12 @@ class _Judge:
         self.control, self.opened, self.asked = control, opened, asked
         self.times, self.measured, self.folder = times, measured, folder
 
+    @property
+    def _overflow(self) -> str:
+        """Why no run is known to come so far; "": nothing is why."""
+        found = self.control.overflow if self.control is not None else ""
+        return found and f"a run may stop before it: {found}"
+
     def answer(self, a: Answer) -> Answer:
         """The answer in seconds; another one stays as it is."""
         if not is_timed(a):
@@ -172,9 +182,11 @@ class _Judge:
             return Answer(a.about, "inconclusive", where + why, cell=True)
 
         cycle = layout.cycle
-        first, second = self._event(one, asked.first), self._event(one, asked.second)
-        if first is None or second is None:
-            return open_("of events with durations only `fires(..)` is looked at")
+        first, second = self._event(a, one, asked.first), self._event(a, one, asked.second)
+        for event in (first, second):
+            if isinstance(event, str):
+                return open_(event)
+        assert not isinstance(first, str) and not isinstance(second, str)
         limit = math.floor(float(asked.time) * NS)
         search = one.search
         if cycle.why:
@@ -183,7 +195,7 @@ class _Judge:
                 found = self._bounded(a, one, layout, (first, second), limit)
             shown = seen_too_long(one, first, second, limit)
             if shown is not None:
-                return self._shown(a, one, shown)
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
             own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
             if own is None or found.answer == "yes":
                 return found
@@ -195,7 +207,7 @@ class _Judge:
         if wait.ns is None or wait.ns + TIE > limit:
             shown = too_long(one, wait, (first, second), limit, over)
             if shown is not None:
-                return self._shown(a, one, shown)
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
             return open_(why_open(one, cycle, wait, (first, second), limit))
         others = [self.control.stops] if self.control is not None and self.control.stops else []
         others += layout.cycle.ends
@@ -258,36 +270,33 @@ class _Judge:
         in_time = control.premises.replies.premise
         return self._yes(a, wait, AT_MOST, *([in_time] if in_time else []))
 
-    def _event(self, one: Measured, f: m.Formula) -> Is | None:
-        """Whether an element is the event; None: the event is not one of steps alone."""
+    def _event(self, a: Answer, one: Measured, f: m.Formula) -> Is | str:
+        """Whether an element is the event; in words why that is not known."""
         graph = one.search.graph
         atoms = list(m.atoms(f))
         if any(x.kind not in ("fires", "fires so") for x in atoms) or not _is_or(f):
-            return None
+            return "of events with durations only `fires(..)` is looked at"
         game = Game(graph.partition.net, graph.storage, files=Files(None))
-        known: dict[int, bool] = {}
+        try:
+            with running(a.about.origin, "its condition on a binding"):
+                found = {
+                    e.number
+                    for e in graph.elements
+                    if not e.is_step
+                    and e.owner >= 0
+                    and any(self._is(x, game, one, e) for x in atoms)
+                }
+        except GameError as problem:
+            return problem.message
+        return found.__contains__
 
-        def is_one(mark: int) -> bool:
-            if mark < 0:
-                return False
-            if mark not in known:
-                e = graph.elements[mark]
-                known[mark] = not e.is_step and e.owner >= 0 and any(
-                    self._is(x, game, one, mark) for x in atoms
-                )  # fmt: skip
-            return known[mark]
-
-        return is_one
-
-    def _is(self, atom: m.Atom, game: Game, one: Measured, mark: int) -> bool:
-        graph = one.search.graph
-        e = graph.elements[mark]
+    def _is(self, atom: m.Atom, game: Game, one: Measured, e: Element) -> bool:
         if atom.kind == "fires":
             return atom.number == e.transition
         condition = self.asked.steps[atom.number]
         if condition.transition != e.transition:
             return False
-        return game.evaluator.value(condition.exp, graph.binding(e)) is True
+        return game.evaluator.value(condition.exp, one.search.graph.binding(e)) is True
 
     def _shown(self, a: Answer, one: Measured, shown: Shown) -> Answer:
         """With the run of a wait that is too long, or that has no end."""

@@ -13,7 +13,7 @@ from pn2code.timing.doings import NS, Doing, Doings
 from pn2code.timing.search import Search
 
 ANSWERS, WORKS, RESTS, SEES_BOTH = range(4)
-CHANNEL = 7
+CHANNEL, UNSURE = 7, 8
 
 
 def explored(
@@ -35,7 +35,7 @@ def explored(
             final_places=(),
             channels=(SimpleNamespace(place=CHANNEL, name="answer"),),
         ),
-        running=SimpleNamespace(firing=9, ending=-1, stopped=10, owing={}),
+        running=SimpleNamespace(firing=9, ending=-1, stopped=10, owing={}, unsure=UNSURE),
         elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (1, 2, 0, 0)],
         arcs=arcs,
         marked=[*({} for _ in arcs[1:]), marked or {}],
@@ -87,3 +87,10 @@ def test_who_writes_a_second_message_stops_the_cell(messages: int, *, goes_on: b
     assert search.overfull() == ([] if goes_on else ["answer"])
     assert bool(search.stopped()) == (not goes_on)
     assert bool(search.stuck) == goes_on
+
+
+def test_a_run_in_which_a_condition_may_have_raised_an_exception_is_none() -> None:
+    """What comes after it is looked at, as nobody knows whether the script comes to it."""
+    search = explored([[(WORKS, 2)], [], [(RESTS, 1)]], NS, {UNSURE: 1})
+    assert occurring(search) == {WORKS, RESTS} and search.may_raise()
+    assert [search.situations[i][0] for i in search.stopped()] == [2]

@@ -19,7 +19,7 @@ from pn2code.timing.waits import longest_wait
 
 MS = NS // 1000
 ASK, WORK, END = 0, 1, 2
-OVER, CALM, STOPPED = 8, 9, 10
+OVER, CALM, STOPPED, UNSURE = 8, 9, 10, 11
 
 
 def timed_cell(work_ns: int, most: int = MOST) -> Search:
@@ -32,7 +32,7 @@ def timed_cell(work_ns: int, most: int = MOST) -> Search:
     graph = SimpleNamespace(
         why="",
         partition=SimpleNamespace(net=net, owners=owners, final_places=(), channels=()),
-        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}),
+        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}, unsure=UNSURE),
         elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (0, 1, 0)],
         arcs=[[(ASK, 1)], [(WORK, 2)], [(END, 3)], []],
         marked=[{}, {}, {}, {OVER: 1}],
@@ -141,7 +141,7 @@ def stopping_cell(first_ns: int = FOREVER, *, halts: bool = False) -> Search:
             final_places=(),
             channels=(),
         ),
-        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}),
+        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}, unsure=UNSURE),
         elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (0, 1, 0, 2)],
         arcs=[
             [(ASK, 1)],

@@ -18,20 +18,26 @@ from pn2code.verdict.whole import Said
 from pn2code.verify.answers.properties import Answer
 
 
+def asked(name: str) -> Answer:
+    response = Response(Atom("fires", 0), Atom("fires", 1), None, "2")
+    about = Property(name, "", "", "response", True, response, (), Origin("cell.cpn"))
+    return Answer(about, "inconclusive", "nobody knows", cell=True)
+
+
+def with_durations(answers: list[Answer]) -> Any:
+    nobody: Any = None
+    said = Said(nobody, {}, nobody, answers, None, ())
+    limits: Any = SimpleNamespace(deadline=NEVER)
+    config = SimpleNamespace(supervisor=SimpleNamespace(reply_timeout_s=5.0))
+    opened: Any = SimpleNamespace(config=config)
+    return verified.with_durations(said, None, opened, limits, nobody, Path(), nobody)
+
+
 @pytest.mark.parametrize("answered", [0, 1, 2])
 def test_answers_that_were_found_before_stay(
     answered: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked = Response(Atom("fires", 0), Atom("fires", 1), None, "2")
-    open_ = [
-        Answer(
-            Property(name, "", "", "response", True, asked, (), Origin("cell.cpn")),
-            "inconclusive",
-            "nobody knows",
-            cell=True,
-        )
-        for name in "abc"
-    ]
+    open_ = [asked(name) for name in "abc"]
     times = Times((), 5.0)
 
     def answer(_: Any, a: Answer) -> Answer:
@@ -41,14 +47,20 @@ def test_answers_that_were_found_before_stay(
 
     monkeypatch.setattr(verified, "look", lambda *_, **__: times)
     monkeypatch.setattr(verified._Judge, "answer", answer)
-    nobody: Any = None
-    said = Said(nobody, {}, nobody, open_, None, ())
-    limits: Any = SimpleNamespace(deadline=NEVER)
-    found = verified.with_durations(said, None, nobody, limits, nobody, Path(), nobody)
-    assert found is not None
-    durations: Any = found.durations
-    assert durations.times is times
+    found = with_durations(open_)
+    assert found.durations.times is times
     assert [a.answer for a in found.answers] == ["yes"] * answered + ["inconclusive"] * (
         3 - answered
     )
     assert all("nobody knows" not in a.why for a in found.answers)
+
+
+def test_what_was_not_measured_is_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    def looks(*_: Any, **__: Any) -> Times:
+        raise TimeIsOverError
+
+    monkeypatch.setattr(verified, "look", looks)
+    found = with_durations([asked("a")])
+    assert [a.answer for a in found.answers] == ["inconclusive"]
+    row = found.durations.row()
+    assert row["why"] and row["reply_timeout_s"] == 5.0 and not row["layouts"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pn2code.timing.answers import ENDLESS, Cycle, Ending
+from pn2code.timing.answers import ENDLESS, NO_END, Cycle, Ending
 
 S = 1_000_000_000
 
@@ -34,7 +34,7 @@ def test_within_ten_seconds(found: Cycle, answer: str) -> None:
 def test_what_is_named_as_a_run_that_goes_on_is_none() -> None:
     """Where an event comes in time, a run may go on for ever after it, but not stop before it."""
     stops = "a run may stop: nothing is at `go on for ever`"
-    assert cycle(None, "", stops, ENDLESS).ends == [stops]
+    assert cycle(None, "", stops, ENDLESS, NO_END).ends == [stops]
 
 
 def test_a_run_that_is_stopped_is_no_cycle() -> None:

@@ -196,7 +196,7 @@ class Judge:
 
         How far parts that stand are from what is carried past them the net says, not where the arm stands.
         """
-        allowed = gap.permitted(is_free=seen.ends is None)
+        allowed = gap.permitted(is_free=seen.ends is None or not seen.ends.is_path)
         if allowed is None or self._led.is_by_the_way(
             gap.a, gap.b, seen.ends_of, seen.among.parts, seen.stands
         ):

@@ -75,7 +75,7 @@ class Way:
     """Some rows of a walk.
 
     Args:
-        ends: of a line or an arc; None: it is a joint move, on which nothing may touch.
+        ends: of the move; None: it is HOME.
         among: as of its step.
     """
 
@@ -160,7 +160,7 @@ class Plan:
             if not isinstance(path, Still):
                 rows.append(path.on_way(np.linspace(0.0, 1.0, _SAMPLES)))
                 is_path = motion.kind in PATHS
-                both = MoveEnds.of(robot, tool, path) if is_path else None
+                both = MoveEnds.of(robot, tool, path, motion.kind)
                 ways.append(Way(slice(len(counts), len(counts) + _SAMPLES), both, step.among))
                 counts += [is_path] * (_SAMPLES - 1)
                 counts.append(not isinstance(step.command, MoveHome | MoveAxes))

@@ -94,6 +94,7 @@ class Context:
         weak: types of values that are not generalised; what is unknown in them at the end of the declaration stays so.
         open_records: selectors and open patterns whose record type must be known in the end.
         tyvars: explicit type variables in force, innermost last.
+        written_tyvars: those that no declaration around them binds, and where they are written.
         generic_base: number of type variables quantified around the declaration being translated.
         datatypes: all datatypes by name.
         colsets: by name; None for those with errors.
@@ -124,6 +125,7 @@ class Context:
         self.open_records: list[tuple[Meta, Span]] = []
         self.weak: list[Ty] = []
         self.tyvars: list[dict[str, Meta]] = []
+        self.written_tyvars: list[tuple[str, Meta, Span]] = []
         self.generic_base = 0
         self.datatypes: dict[str, core.DatatypeDec] = dict(DATATYPES)
         self.colsets: dict[str, Colset | None] = {}

@@ -9,8 +9,8 @@ First the sizes of its state space, then whether a marking is dead and the prope
 tokens places hold. What the exploration has seen must agree with it.
 
 It is asked only where its answers are about the same state space: nothing is timed or drawn at random, nobody writes
-references or files, no inscription raises an exception whatever is asked first, there are no priorities, inhibitor and
-reset arcs, and no code segments.
+references or files (code segments neither), no inscription raises an exception whatever is asked first, and there are
+no priorities, inhibitor and reset arcs.
 """
 
 from __future__ import annotations
@@ -59,6 +59,8 @@ _LEAST_S, _MOST_S = 10.0, 300.0
 """Where time is not limited: half of what the exploration took, within these bounds."""
 _UNFOLDING = 0.35
 """Of the time, for unfolding: where colours do not end it would go on for ever."""
+_ASKING = 0.9
+"""Of what is left then, for all questions; the rest is for telling what is known."""
 _SIZES = 0.4
 _PROPERTIES = 0.7
 _RUNS = 0.3
@@ -77,7 +79,7 @@ def why_not(net: FlatNet) -> str:
     if len({t.priority for t in net.transitions}) > 1:
         return "its transitions have priorities"
     d = Diagnostics()
-    check(net, d)
+    check(net, d, with_code=True)
     if d.errors:
         return d.errors[0].message
     if nondeterminism.draws(net):
@@ -149,7 +151,8 @@ def look(
             told={},
             refused=questions.refused,
         )
-        asker = _Asker(program, unfolding, questions, deadline, limits, options, occurred, made)
+        ends = deadline.share(_ASKING)
+        asker = _Asker(program, unfolding, questions, ends, limits, options, occurred, made)
         with suppress(TimeIsOverError), _until(options.interrupted).enforced():
             asker.ask_all()
             asker.find_runs(opened)
@@ -176,7 +179,7 @@ def _until(interrupted: Callable[[], bool]) -> Deadline:
 def _unfolded(net: FlatNet) -> Unfolding | str:
     """The net unfolded, or why it cannot be asked."""
     d = Diagnostics()
-    unfolding = unfold(net, d)
+    unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
         return d.errors[0].message
     if unfolding.faults:
