@@ -25,6 +25,7 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it generated | `unbound-variable` |
 | an operator at the top of an inscription of several arcs from one place (`h :: t` and `l`), or with a coefficient on an arc from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it generated | takes what is written, with a warning (`engine-code`) |
 | an expression without variables in the key of a tuple: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it generated | computes it; `unbound-variable` if a variable has no value |
+| a guard equation for a variable that has its value already (`[j = j + 1]`; `[even j, i = j, j = 1]`), in a transition whose arcs fall into groups without a common variable | accepts it, compares a variable of another group, and cannot compile the code that it generated | tests it |
 | an integer literal of more than 31 bits | accepts it, then cannot compile the code that it generated | `literal-too-large` |
 | a port that has a socket at one substitution transition of the page and none at another | uses the wrong socket, or `Exception Subscript` | a separate place, with a warning |
 | equal tokens with different time stamps | takes one at random, in state spaces, too | takes the latest that is available; `replay` accepts any |
