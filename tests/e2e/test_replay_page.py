@@ -24,8 +24,10 @@ from pn2code.replay.arrays import packed, packed_bytes, packed_reals
 from pn2code.replay.motion import Motion
 from pn2code.replay.page import page
 from pn2code.robot.transforms import Array
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.engine import Engine
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game

@@ -295,12 +295,13 @@ uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t 
 /* Print an answer at once, so that it is known even if the program is ended in the next moment. */
 void tb_say(tb_question_t *q, tb_answer_t answer, const char *method);
 void tb_say_bound(tb_question_t *q, int64_t bound, bool is_exact, const char *method);
+void tb_say_run(const tb_question_t *q, const uint32_t *step, uint32_t steps);
 
 /* --- methods ------------------------------------------------------------------------------------------------------ */
 
-void tb_walk(tb_job_t *job, uint64_t seed, double seconds);
+void tb_walk(tb_job_t *job, uint64_t seed, double seconds, bool is_told);
 void tb_explore(tb_job_t *job, bool count);
-void tb_reach(tb_job_t *job, double each);
+void tb_reach(tb_job_t *job, double each, bool is_told);
 void tb_ctl(tb_job_t *job, uint64_t seed, double seconds);
 /* With seeds above 4 a run is hunted for first (tables_ltl_hunt.c). */
 void tb_ltl(tb_job_t *job, uint64_t seed, double seconds);

@@ -3,6 +3,7 @@
  *
  *     answer NUMBER yes|no METHOD
  *     bound NUMBER VALUE exact|least METHOD
+ *     run NUMBER STEPS TRANSITION..              (before the answer that it shows)
  */
 #include "tables.h"
 
@@ -32,4 +33,14 @@ void tb_say_bound(tb_question_t *q, int64_t bound, bool is_exact, const char *me
         (void)printf("bound %" PRIu32 " %" PRId64 " %s %s\n", q->number, bound, is_exact ? "exact" : "least", method);
         print_now();
     }
+}
+
+void tb_say_run(const tb_question_t *q, const uint32_t *step, uint32_t steps)
+{
+    (void)printf("run %" PRIu32 " %" PRIu32, q->number, steps);
+    for (uint32_t i = 0U; i < steps; i++) {
+        (void)printf(" %" PRIu32, step[i]);
+    }
+    (void)printf("\n");
+    print_now();
 }

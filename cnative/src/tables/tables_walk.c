@@ -23,6 +23,26 @@ enum {
 
 static uint64_t state = 1U;
 
+/* The steps of the walk so far, if runs are to be told; NULL: they are not. */
+static uint32_t *taken = NULL;
+static uint32_t taken_count = 0U;
+
+static void go_to_start(const tb_job_t *job, tb_cursor_t *c)
+{
+    tb_go_to(c, job->net.initial);
+    taken_count = 0U;
+}
+
+static bool step_by(tb_cursor_t *c, uint32_t t)
+{
+    const bool is_done = tb_fire(c, t);
+    if (is_done && (taken != NULL)) {
+        taken[taken_count] = t;
+        taken_count++;
+    }
+    return is_done;
+}
+
 static uint32_t drawn(uint32_t below)
 {
     state ^= state << 13U;
@@ -40,6 +60,9 @@ static uint32_t look(tb_job_t *job, const tb_cursor_t *c)
             continue;
         }
         if ((q->kind == TB_REACH) && tb_holds(q->formula, c)) {
+            if (taken != NULL) {
+                tb_say_run(q, taken, taken_count);
+            }
             tb_say(q, TB_YES, "RANDOM_WALK");
         } else if (q->kind == TB_BOUND) {
             const int64_t sum = tb_sum(q->formula, c->marking);
@@ -154,7 +177,7 @@ static uint32_t eager_walk(tb_job_t *job, tb_cursor_t *c, const tb_question_t *g
     double nearest = aim(goal, c);
     uint32_t waited = 0U;
     for (uint32_t step = 0U; (step < length) && (c->enabled_count > 0U) && !tb_is_over(); step++) {
-        if (!tb_fire(c, chosen(c, goal, true))) {
+        if (!step_by(c, chosen(c, goal, true))) {
             break;
         }
         open = look(job, c);
@@ -168,9 +191,10 @@ static uint32_t eager_walk(tb_job_t *job, tb_cursor_t *c, const tb_question_t *g
     return open;
 }
 
-void tb_walk(tb_job_t *job, uint64_t seed, double seconds)
+void tb_walk(tb_job_t *job, uint64_t seed, double seconds, bool is_told)
 {
     tb_cursor_t c;
+    taken = is_told ? tb_new((size_t)LENGTH, sizeof *taken) : NULL;
     tb_cursor_init(&c, &job->net);
     state = (seed * 0x9e3779b97f4a7c15U) | 1U;
     uint32_t open = look(job, &c);
@@ -185,13 +209,13 @@ void tb_walk(tb_job_t *job, uint64_t seed, double seconds)
             left = guess;
             (void)memcpy(left, goal->guide, size);
         }
-        tb_go_to(&c, job->net.initial);
+        go_to_start(job, &c);
         if ((goal != NULL) && ((walk % 8U) == 7U)) {
             open = eager_walk(job, &c, goal, length);
             continue;
         }
         for (uint32_t step = 0U; (open > 0U) && (step < length) && (c.enabled_count > 0U) && !tb_is_over(); step++) {
-            if (!tb_fire(&c, next_step(&c, goal, left))) {
+            if (!step_by(&c, next_step(&c, goal, left))) {
                 break;
             }
             open = look(job, &c);
@@ -201,5 +225,9 @@ void tb_walk(tb_job_t *job, uint64_t seed, double seconds)
         }
     }
     tb_free(guess, job->net.transitions, sizeof *guess);
+    if (taken != NULL) {
+        tb_free(taken, (size_t)LENGTH, sizeof *taken);
+        taken = NULL;
+    }
     tb_cursor_free(&c);
 }

@@ -46,6 +46,7 @@ from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.asked import files as asked_files
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.unfolded.look import ALONE
 from pn2code.verdict.whole import (
     MOST_COLOURS,
     Checks,
@@ -152,6 +153,15 @@ def verify(
             help="Explore the full state space, even of a large cell, and with `--reduce`.",
         ),
     ] = False,
+    unfold: Annotated[
+        bool | None,
+        typer.Option(
+            "--unfold/--no-unfold",
+            help="Ask the unfolded net at once, without exploring one marking after the other; or never.  "
+            "(default: where a limit ends the exploration)",
+            show_default=False,
+        ),
+    ] = None,
     spill: Annotated[
         Path | None,
         typer.Option(
@@ -293,6 +303,11 @@ def verify(
     properties it is 0 if all are true, 1 if one is false, and 3 if one is not known and none is false. With a
     cell.toml the checks of its supervisor count in the same way.
     """
+    if unfold and (reduce or approximate or max_states is not None):
+        raise typer.BadParameter(
+            "it explores no marking, so that nothing limits, reduces or approximates how it explores them",
+            param_hint="--unfold",
+        )
     deadline = Deadline.of_command(max_seconds)
     check_kind(draw_to, GRAPH_KINDS, "--draw")
     check_kind(plot_to, PLOT_KINDS, "--plot")
@@ -305,6 +320,11 @@ def verify(
             )
             refuse_wide(opened.config, int_bits)
             asked = question(opened, texts, file, d, found=found_properties)
+            if unfold and opened.config is not None:
+                raise typer.BadParameter(
+                    "what is said of a cell is said of its programs, which are explored",
+                    param_hint="--unfold",
+                )
             if durations and opened.config is None:
                 raise typer.BadParameter(
                     f"only a cell has durations, and there is no cell.toml beside `{net}`",
@@ -315,7 +335,7 @@ def verify(
     if d.has_errors:
         stop(d, form)
     limits = Limits(
-        max_states=max_states,
+        max_states=ALONE if unfold else max_states,
         deadline=deadline,
         memory=memory,
         threads=threads or cores(),
@@ -327,6 +347,7 @@ def verify(
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
+        unfolds=unfold is not False,
     )
     is_cell = opened.config is not None and check_controller
     with (

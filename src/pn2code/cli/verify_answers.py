@@ -88,6 +88,7 @@ _RESTS = {
     basis.PART: "a part that decides",
     basis.RUN: "a run",
     basis.NET: "the net itself",
+    basis.UNFOLDED: "the unfolded net",
 }
 
 

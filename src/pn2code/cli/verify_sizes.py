@@ -10,7 +10,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis
 from pn2code.verify.exploring.result import Exploration, Known
-from pn2code.verify.report import control_text
+from pn2code.verify.report import control_text, unfolded_text
 from pn2code.verify.report.text import bounded_places
 
 MOST_NAMES = 6
@@ -24,7 +24,8 @@ def sizes_of(said: Said) -> Iterator[str]:
     if found.known is not None:
         yield from _of_counted(said, found.known)
         return
-    for name, what in basis.complete(found):
+    is_explored = found.unfolded is None or not found.unfolded.is_alone
+    for name, what in basis.complete(found) if is_explored else ():
         more = ""
         if name == "Markings":
             more = f", in {found.seconds:.2f} s; compiled in {found.compile_seconds:.1f} s"
@@ -39,6 +40,12 @@ def sizes_of(said: Said) -> Iterator[str]:
         )
     if found.reductions:
         yield from row("Reduced by", ", ".join(found.reductions))
+    for name, what in unfolded_text.rows(net, found):
+        yield from row(name, what)
+    if found.unfolded is not None and found.unfolded.is_asked:
+        if not found.knows_whole:
+            yield from _growing(net, found)
+        return
     yield from row("Dead markings", dead_markings(found))
     if found.graph is not None:
         every = found.graph.home_count == found.nodes
@@ -53,7 +60,12 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row("Live transitions", f"{live} of {len(net.transitions)}")
     if found.bounds is not None:
         yield from row("Bounds", _most(net, found))
-    yield from (x for line in growing_lines(net, found) for x in row("Grows, perhaps", line))
+    yield from _growing(net, found)
+
+
+def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
+    for line in growing_lines(net, found):
+        yield from row("Grows, perhaps", line)
 
 
 def _of_counted(said: Said, known: Known) -> Iterator[str]:

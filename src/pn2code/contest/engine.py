@@ -70,6 +70,14 @@ class Space:
     method: str = "EXPLICIT"
 
 
+@frozen
+class Run:
+    """Steps from the initial marking to one that a question looks for: indices of transitions of the tables."""
+
+    number: int
+    steps: tuple[int, ...]
+
+
 def engine(d: Diagnostics) -> AbstractContextManager[Path | None]:
     """The compiled engine; None after a diagnostic."""
     return programs.program(HOST, (), d)
@@ -102,7 +110,7 @@ class Task:
     on_whole: Callable[[], None] | None = None
 
 
-Said = SimpleQueue[Answer | Space | Exception | None]
+Said = SimpleQueue[Answer | Space | Run | Exception | None]
 """What the lanes say, in the order in which they say it; None: one has come to its end."""
 
 
@@ -112,7 +120,7 @@ def ask(
     said: Said | None = None,
     *,
     until: float | None = None,
-) -> Iterator[Answer | Space]:
+) -> Iterator[Answer | Space | Run]:
     """The answers of all lanes side by side, as they come; processes end with the iteration.
 
     Args:
@@ -187,7 +195,7 @@ class _Lane(threading.Thread):
         finally:
             self._say(None)
 
-    def _say(self, found: Answer | Space | Exception | None) -> None:
+    def _say(self, found: Answer | Space | Run | Exception | None) -> None:
         """Nothing any more when nobody waits: the queue may be that of others by then."""
         with self.lock:
             if not self.is_over:
@@ -231,7 +239,7 @@ def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
 def _read(
     process: subprocess.Popen[str],
     task: Task,
-    say: Callable[[Answer | Space], None],
+    say: Callable[[Answer | Space | Run], None],
 ) -> None:
     with process:
         assert process.stdout is not None and process.stderr is not None
@@ -251,7 +259,7 @@ def _read(
         raise RuntimeError(errors.strip())
 
 
-def _parsed(line: str) -> Answer | Space | None:
+def _parsed(line: str) -> Answer | Space | Run | None:
     words = line.split()
     match words:
         case ["answer", number, value, method]:
@@ -263,4 +271,6 @@ def _parsed(line: str) -> Answer | Space | None:
         case ["sizes", states, arcs, place, marking]:
             sizes = int(states), int(arcs), int(place), int(marking)
             return Space(*sizes, None, "DECISION_DIAGRAMS")
+        case ["run", number, count, *steps] if len(steps) == int(count):
+            return Run(int(number), tuple(map(int, steps)))
     return None

@@ -10,7 +10,9 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | net | engine | pn2code |
 |---|---|---|
 | several arcs from one place that share variables with others: `(n, r)` and `(m, r)` | `InternalError: insert_transvar` or `ins_compressed`, the page cannot be checked; or it takes the variables for others: `No complete binding sequence`, `Cannot bind`, `IllegalBit`; mostly accepted when the arcs come in another order | accepts it with a warning (`arcs-share-variables`): a shared variable has one value |
+| a record or tuple on an arc whose fields stand in another order than in the colour set, if one of them is known before: `{b = j, a = i}` and `[i = 1]` with `record a : INT * b : INT` | takes one field for another in its search: finds none or some of the tokens, also in state spaces, or cannot compile the code that it generated | finds all, with a warning (`engine-field-order`) |
 | a declaration other than `val` in an arc inscription, guard or priority: `let fun f x = x + 1 in f n end` | `InternalError: Illegal FunDec`, the page cannot be checked | accepts it, with a warning (`declaration-in-inscription`) |
+| `open` in an initial marking, a delay or a code segment: `let open List in hd l end` | `Uncaught Exception: Compile`, the page cannot be checked | accepts it, with a warning (`declaration-in-inscription`) |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
 | a variable twice in one pattern: `(x, x)` | takes a wrong binding, then `Internal Error: rm ...` | requires both parts to be equal |

@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import field
 from pathlib import Path
 
-from pn2code.base.frozen import frozen
+from pn2code.base.deadline import OverError
+from pn2code.base.frozen import frozen, record
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
 from pn2code.geometry.answers import Around, Layout, Move, Open, Pair, Proposal, Verdict
@@ -77,6 +79,11 @@ class _Meeting:
     around: Around | None = None
 
     @property
+    def is_touch(self) -> bool:
+        """Whether they touch; else it is not known."""
+        return self.apart.outcome == "touch"
+
+    @property
     def told(self) -> tuple[object, ...]:
         """What is told of it: where it is the same, it is one."""
         gap = self.apart.where
@@ -102,6 +109,43 @@ class Seen:
         return tuple(dict.fromkeys((*self.arms.values(), *self.parts)))
 
 
+LATE = (
+    "the time was up before everything was looked at: a NO is certain, of all else nothing is known"
+)
+
+
+@record
+class Progress:
+    """What has been found so far, for those whose time is up.
+
+    Args:
+        found: the situations that are looked at; seen: all of them, when that is done.
+        at_start, rows, handled: moves that were looked at; arms, parts: what does not surely keep apart.
+        moves, pairs: what was found wrong before in other parts of the cell.
+    """
+
+    found: Situations | None = None
+    seen: Seen | None = None
+    at_start: tuple[Move, ...] = ()
+    rows: dict[tuple[int, str], Move] = field(default_factory=dict)
+    handled: dict[tuple[str, str, str], Move] = field(default_factory=dict)
+    arms: dict[tuple[Side, Side], _Meeting] = field(default_factory=dict)
+    parts: dict[tuple[str, str, str], _Meeting] = field(default_factory=dict)
+    moves: tuple[Move, ...] = ()
+    pairs: tuple[Pair, ...] = ()
+
+    def begin(self, found: Situations) -> None:
+        """Situations are looked at now."""
+        self.found, self.seen = found, None
+        self.rows, self.handled, self.arms, self.parts = {}, {}, {}, {}
+
+    def keep(self, moves: Iterable[Move], pairs: Iterable[Pair]) -> None:
+        """What was found in the situations that were looked at last; of it what is wrong is certain."""
+        self.moves = tuple(m for m in moves if m.answer == "no")
+        self.pairs = tuple(p for p in pairs if p.answer == "no")
+        self.found = None
+
+
 class Look:
     """One layout."""
 
@@ -115,6 +159,7 @@ class Look:
         self.robots = tuple(r.name for r in cell.moving)
         self.runs: dict[tuple[Situations, int, tuple[int, ...]], Run] = {}
         self._numbered = 0
+        self.progress = Progress()
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -124,7 +169,7 @@ class Look:
         """All that is known."""
         began = time.perf_counter()
         found = self.situations(self.graph)
-        seen = self.seen(found)
+        seen = self.progress.seen = self.seen(found)
         bad = {sides: pair for sides, pair in seen.arms.items() if pair.answer == "no"}
         touching = [sides for sides, pair in bad.items() if not pair.is_held]
         touching += dict.fromkeys(x for x in found.at_once() if x not in touching)
@@ -135,17 +180,66 @@ class Look:
             zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
         return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
 
+    def so_far(self) -> Layout:
+        """What is wrong, when the time is up: only that is certain. How deep things overlap is not searched for."""
+        began, known = time.perf_counter(), self.progress
+        found = known.found
+        if found is not None and known.seen is not None:  # a place that helps was being looked for
+            return self.layout_of(found, known.seen.moves, known.seen.pairs, began)
+        moves, pairs = list(known.moves), list(known.pairs)
+        if found is not None and not found.graph.wider:
+            moves += self._wrong_moves(found)
+            touching = [m for m in (*known.arms.values(), *known.parts.values()) if m.is_touch]
+            first = {m.told: m for m in reversed(touching)}
+            pairs += [_met(m, m.apart, self._run(found, m.met)) for m in reversed(first.values())]
+            pairs += self._turning(found)
+        return Layout(
+            self.layout,
+            len(found.graph.arcs) if found is not None else 0,
+            len(found.situations) if found is not None else 0,
+            tuple(moves),
+            tuple(pairs),
+            self.comparison.compared,
+            self.comparison.sweeper.queries,
+            0.0,
+            LATE,
+            devices=tuple(r.name for r in self.cell.devices),
+        )
+
+    def _wrong_moves(self, found: Situations) -> Iterator[Move]:
+        """What cannot be done, of what was looked at, and of what cannot even be planned."""
+        known = self.progress
+        yield from (m for m in known.at_start if m.answer == "no")
+        yield from (m for m in (*known.rows.values(), *known.handled.values()) if m.answer == "no")
+        told: set[object] = set(known.handled)
+        for (number, _element), met in found.activities.items():
+            activity = self.doing.activities[number]
+            for leg, contents in activity.legs:
+                load = contents.load(leg.robot)
+                own = (leg.number, spots(tuple(p for p in load if p.holder)))
+                if leg.fault is not None and own not in known.rows and own not in told:
+                    told.add(own)
+                    yield self._move(found, leg, load, met)
+            if activity.is_part:
+                row = self._handling(found, activity, met)
+                key = (row.transition, row.command, row.begins)
+                if key not in told:
+                    told.add(key)
+                    yield row
+
     def situations(self, graph: CellGraph) -> Situations:
         """All of them."""
         self.options.stage("looking where arms can be ...")
         found = Situations(graph, self.doing, self.robots)
+        self.progress.begin(found)
         found.explore(HowFar(self.options.say, "looking where arms can be", noun="situations"))
         return found
 
     def seen(self, found: Situations) -> Seen:
         """All moves, and what does not surely keep apart."""
         self.options.stage("sweeping moves ...")
-        moves = self._moves(found)
+        at_start = self.progress.at_start = tuple(self._at_start())
+        moves = [*at_start, *self._moves(found)]
         self.options.stage("sweeping pairs ...")
         arms = self._pairs(found)
         return Seen(tuple(moves), arms, (*self._parts(found), *self._turning(found)))
@@ -208,14 +302,13 @@ class Look:
     # --- moves -----------------------------------------------------------------------------------
 
     def _moves(self, found: Situations) -> list[Move]:
-        rows: dict[tuple[int, str], Move] = {}
+        rows, handled = self.progress.rows, self.progress.handled
         looked: set[tuple[int, str]] = set()
-        handled: dict[tuple[str, str, str], Move] = {}
         activities = (self.doing.activities[number] for number, _ in found.activities)
         legs = ((x, c.load(x.robot)) for a in activities for x, c in a.legs)
         with self.comparison.moves_ahead(filter(self._is_looked_at, legs), self.options.jobs):
             self._each_move(found, rows, looked, handled)
-        return [*self._at_start(), *rows.values(), *handled.values()]
+        return [*rows.values(), *handled.values()]
 
     @staticmethod
     def _is_looked_at(moved: tuple[Leg, Load]) -> bool:
@@ -342,7 +435,7 @@ class Look:
 
     def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
         """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
-        met_: dict[tuple[Side, Side], _Meeting] = {}
+        met_ = self.progress.arms
         activities = self.doing.activities
         pairs = [(activities[n], activities[m]) for n, m in found.pairs]
         all_sides = [
@@ -437,7 +530,7 @@ class Look:
     def _parts(self, found: Situations) -> list[Pair]:
         """Arms, with what they carry, and parts that stand."""
         parts = found.parts() if found.beside else {}
-        bad: dict[tuple[str, str, str], _Meeting] = {}
+        bad = self.progress.parts
         more = HowFar(self.options.say, "sweeping parts that stand", total=len(found.beside))
         for (number, i, where), met in found.beside.items():
             more()
@@ -467,13 +560,14 @@ class Look:
             self._numbered += 1
             layout = f"-{self.layout}" if self.layout else ""
             name = f"{self.options.stem}.geometry{layout}-{self._numbered}.trace.jsonl"
-            self.runs[key] = write(
-                found.graph,
-                found.path_to(met.situation),
-                [e for e in met.elements if e >= 0],
-                self.options.folder / name,
-                self.options.initial,
-            )
+            file = self.options.folder / name
+            under_way = [e for e in met.elements if e >= 0]
+            try:
+                path = found.path_to(met.situation)
+                self.runs[key] = write(found.graph, path, under_way, file, self.options.initial)
+            except OverError:
+                file.unlink(missing_ok=True)  # half of it is no run
+                raise
         return self.runs.get(key)
 
     def keep_runs(self, rows: Iterable[Move | Pair | Open]) -> None:

@@ -23,18 +23,11 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.emission.write import expect_writable
 from pn2code.input_files import folder_of
-from pn2code.run.cell import (
-    Prepared,
-    RunOptions,
-    RunResult,
-    prepare,
-    run_once,
-    sensors_of,
-    summary_of,
-    write_results,
-)
-from pn2code.run.engine import Observer
+from pn2code.run.cell import run_once, sensors_of
+from pn2code.run.observer import Observer
+from pn2code.run.prepare import Prepared, RunOptions, prepare
 from pn2code.run.record import RunRecord
+from pn2code.run.results import RunResult, summary_of, write_results
 from pn2code.run.stops import Rate, Stops
 
 Watcher = TypeVar("Watcher", bound=Observer)

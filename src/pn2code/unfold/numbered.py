@@ -16,7 +16,8 @@ from typing import Any
 
 from pn2code.ml.core.terms import Con, Exp, If, RecordExp, Var
 from pn2code.ml.core.types import TRecord
-from pn2code.semantics.evaluation.evaluate import Evaluator, variables
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.values.data import Data, Value
 
 Environment = list[int]

@@ -39,7 +39,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Form,
 )
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Data, MlException, MlLimit, Value

@@ -25,7 +25,14 @@ from pn2code.verdict.asked import Asked, as_text
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.lasso import write_loop
-from pn2code.verify.answers.properties import Answer, Evidence, answers, counted, drawn
+from pn2code.verify.answers.properties import (
+    Answer,
+    Evidence,
+    answers,
+    counted,
+    drawn,
+    from_unfolded,
+)
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.answers.run_names import run_names
 from pn2code.verify.codes import TRACE_UNWRITABLE
@@ -224,6 +231,7 @@ def answered(
         control: what a cell was looked at in; None: the net is no cell.
     """
     plain = answers(asked.plain, found.answers, found)
+    plain = tuple(from_unfolded(a, found) for a in plain)
     if found.covering is not None:
         plain = tuple(
             _pumped(a, found.covering, opened, folder, number) for number, a in enumerate(plain)
@@ -250,13 +258,16 @@ def answered(
             of_net = _confirmed(of_net, asked.properties, opened.flat, opened, found, deadline, d)
             answer = replace(answer, net_evidence=of_net.evidence)
         is_shownless = (
-            answer.answer == "no" and _has_run(answer.about.asked) and not answer.is_pumped
+            answer.answer == "no"
+            and _has_run(answer.about.asked)
+            and not answer.is_pumped
+            and not answer.no_run
         )
         if is_shownless and answer.evidence is None and not had_time(answer, found, control):
             answer = replace(answer, no_run=_how_to_get_a_run(answer, found, control))
         looked.append(answer)
-        if answer.evidence is not None:
-            continue  # it has been looked at
+        if answer.evidence is not None or answer.methods:
+            continue  # it has been looked at, or it is said why there is none
         if (
             before.evidence is not None
             or is_lost

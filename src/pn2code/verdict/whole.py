@@ -22,6 +22,7 @@ from pn2code.semantics.game.errors import about_files
 from pn2code.verdict import channel_model, closed, controller, other_orders, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.unfolded import look as unfolded
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
@@ -227,6 +228,9 @@ def look(
     asks_control = bool(checks.controller or asked)
     is_cell = cell is not None and (asks_control or checks.channel_model)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
+    may_unfold = not is_cell and _may_unfold(opened, limits)
+    if may_unfold:
+        part = replace(limits, deadline=limits.deadline.share(unfolded.EXPLORING))
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(cell, of_net.sizes))
@@ -234,6 +238,8 @@ def look(
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
+    if may_unfold:
+        found = unfolded.look(opened, asked, found, limits, own_options or options)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
     control: Control | None = None
@@ -253,6 +259,15 @@ def look(
     if not is_cell or (soon.orders is not None and soon.orders.why == "seconds"):
         soon = other_orders.look(opened, found, limits, options)
     return Looked(soon, control, more, seen)
+
+
+def _may_unfold(opened: OpenNet, limits: Limits) -> bool:
+    """Whether the unfolded net of a net may be asked where a limit ends its exploration."""
+    if opened.config is not None or limits.approximation is not None or not limits.unfolds:
+        return False
+    with suppress(TimeIsOverError), limits.deadline.enforced():
+        return limits.deadline.left is None or not unfolded.why_not(opened.flat)
+    return False
 
 
 def _open_channels(cell: Partition, sizes: Sizes) -> frozenset[int]:

@@ -200,6 +200,8 @@ def declaration(name: str) -> str:
 def declared(name: str) -> tuple[str, ...]:
     """What its declaration declares: itself, and what stands beside it."""
     found = re.findall(
-        r"^(?:fun|val|exception|structure|functor|signature) (\w+)", declaration(name), re.MULTILINE
+        r"^(?:fun|val|exception|structure|functor|signature) ([\w']+)",
+        declaration(name),
+        re.MULTILINE,
     )
     return tuple(dict.fromkeys(found))

@@ -29,7 +29,8 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.random import occurrence_of
 from pn2code.semantics.evaluation.references import NOTHING, Held, tracked
 from pn2code.semantics.game.constant import constant_transitions
-from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.game.demands import Demand
+from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.enabling_cache import EnablingCache
 from pn2code.semantics.game.errors import GameError, running
 from pn2code.semantics.game.marking import (

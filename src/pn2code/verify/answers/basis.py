@@ -22,6 +22,7 @@ MARKING: Final = "marking"
 PART: Final = "part"
 RUN: Final = "run"
 NET: Final = "net"
+UNFOLDED: Final = "unfolded"
 
 SAYS: Final = {
     MARKINGS: "all reachable markings were seen",
@@ -31,6 +32,7 @@ SAYS: Final = {
     PART: "a part of the markings was seen that decides it, whatever the others are like",
     RUN: "a run was found that shows the answer",
     NET: "the net itself was examined, not its state space",
+    UNFOLDED: "the unfolded net was asked about all of its markings, without visiting each",
 }
 _OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory", "reach"})
 """Checks of a supervisor that look at one marking after the other."""

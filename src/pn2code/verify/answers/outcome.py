@@ -69,7 +69,7 @@ def verdict(found: Exploration, counts: Counts) -> Word:
 
 def _is_enough(found: Exploration, counts: Counts) -> bool:
     """Whether what was looked at is all that was asked: where nothing else is, that is all markings."""
-    return bool(counts.asked or found.complete or (found.known and counts.all))
+    return bool(counts.asked or found.knows_whole or (found.known and counts.all))
 
 
 def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
@@ -78,7 +78,15 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
         return ""
     if found.known is not None:
         return _counted(found, found.known)
-    return f"{_why(found, counts)}. {endless(net, found)}{basis.partial(found)}"
+    rest = basis.partial(found)
+    if found.unfolded is not None and found.unfolded.is_asked:
+        if found.unfolded.is_alone:
+            return "" if found.knows_whole else f"{_why(found, counts)}."
+        rest = (
+            "Nodes, and tables of bounds, dead markings and transitions, are those of the part that was seen; what the "
+            "unfolded net tells is about all reachable markings."
+        )
+    return f"{_why(found, counts)}. {endless(net, found)}{rest}"
 
 
 def _counted(found: Exploration, known: Known) -> str:
@@ -120,6 +128,11 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
         )
         nothing = "and there are no properties to check"
         return f"Verdict: COMPLETE. All {what} were seen, {nothing}.{_in_order(net, found)}"
+    if found.knows_whole:
+        return (
+            "Verdict: COMPLETE. All reachable markings are known, as a set of those of the unfolded net, and there are "
+            f"no properties to check.{_in_order(net, found)}"
+        )
     why = _why(found, counts)
     known = f"{_all_good(counts.all)}, but " if counts.all else ""
     return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -78,6 +79,8 @@ class Answer:
     """not all markings were seen, and what was seen decides"""
     assumes: tuple[str, ...] = ()
     """what a "yes" about a cell rests on that no state of it shows"""
+    methods: tuple[str, ...] = ()
+    """of the unfolded net, which have given it, in the words of the contest; (): it was explored"""
 
     @property
     def is_expected(self) -> bool:
@@ -88,6 +91,8 @@ class Answer:
     def rests_on(self) -> str | None:
         """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
         has_run = self.evidence is not None or self.is_pumped
+        if self.methods and not has_run:
+            return basis.UNFOLDED
         return basis.of_property(
             self.about, self.answer, has_run=has_run, is_of_part=self.is_of_part
         )
@@ -112,6 +117,7 @@ class Answer:
             "no_run": self.no_run or None,
             "rests_on": self.rests_on,
             "assumes": list(self.assumes),
+            "methods": list(self.methods),
         }
 
     def _net_row(self) -> dict[str, Any]:
@@ -160,6 +166,36 @@ def _answer(p: m.Property, said: Mapping[str, Any], *, is_part: bool) -> Answer:
         said.get("value"),
         said.get("node"),
         is_of_part=is_part and verdict != "inconclusive",
+    )
+
+
+def from_unfolded(answer: Answer, found: Exploration) -> Answer:
+    """With what the unfolded net tells, where exploring has not decided."""
+    u = found.unfolded
+    if answer.answer != "inconclusive" or u is None or not u.is_asked:
+        return answer
+    one = (u.told or {}).get(answer.about.name)
+    if one is None:
+        why = clause(found.why)
+        refused = (u.refused or {}).get(answer.about.name)
+        if refused:
+            more = "" if u.is_alone else f"{why}, and "
+            why = f"{more}the unfolded net cannot be asked: {refused}"
+        return replace(answer, why=why)
+    evidence = None if one.run is None else Evidence(*one.run, None)
+    is_shown = isinstance(answer.about.asked, m.Invariant | m.Bound)
+    looked = (
+        "walks and searches have found none in time"
+        if is_shown
+        else "none is looked for in the unfolded net"
+    )
+    has_run = not one.holds and evidence is None
+    return Answer(
+        answer.about,
+        "yes" if one.holds else "no",
+        evidence=evidence,
+        no_run=looked if has_run and not isinstance(answer.about.asked, m.Branching) else "",
+        methods=one.methods,
     )
 
 

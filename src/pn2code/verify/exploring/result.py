@@ -13,6 +13,7 @@ from pn2code.semantics.game.report import value_text
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.verify.exploring.covering import Covering
 from pn2code.verify.exploring.multiset_texts import multiset_text
+from pn2code.verify.exploring.unfolded import Unfolded
 
 LEAST_GROWING = 1_000
 """Markings from which on it says something that a place differs in most of them ..."""
@@ -194,6 +195,7 @@ class Exploration:
         covering: of "infinite": the run that shows that places, or the time alone, grow without bound.
         known: of "counted": what is known of all markings nevertheless.
         orders: what CPN Tools may raise in another order; None: nothing, or it was not looked at.
+        unfolded: what the unfolded net tells where a limit has ended the exploration; None: it was not looked at.
         told: whether the explorer has told what it has seen; else how many markings that were is all that is known.
     """
 
@@ -226,11 +228,17 @@ class Exploration:
     known: Known | None = None
     orders: OtherOrders | None = None
     told: bool = True
+    unfolded: Unfolded | None = None
 
     @property
     def is_reduced(self) -> bool:
         """Whether nodes and arcs are less than those of the whole space, and only some properties are known."""
         return bool({"partial-order", "symmetry"}.intersection(self.reductions))
+
+    @property
+    def knows_whole(self) -> bool:
+        """Whether all reachable markings are known: explored, or as a set of those of the unfolded net."""
+        return self.complete or (self.unfolded is not None and self.unfolded.is_whole)
 
     @property
     def is_counted(self) -> bool:

@@ -12,6 +12,8 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.exploring.covering import Covering
 from pn2code.verify.exploring.multiset_texts import multiset_text
 from pn2code.verify.exploring.result import FAIRNESS, Exploration, Known, OtherOrders
+from pn2code.verify.exploring.unfolded import Unfolded
+from pn2code.verify.exploring.unfolded import row as unfolded_row
 
 
 def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
@@ -58,6 +60,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "error": dict(found.error) if found.error else None,
         "other_orders": _orders_row(net, found.orders),
         "counted": _known_row(net, found.known),
+        "unfolded": _unfolded_row(net, found.unfolded),
         "unbounded": _covering_row(net, found.covering),
         "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
     }
@@ -99,6 +102,15 @@ def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:
         "dead_markings_are_ends": known.ends or None,
         "dead_transitions": [name(i) for i in known.never],
     }
+
+
+def _unfolded_row(net: FlatNet, found: Unfolded | None) -> dict[str, Any] | None:
+    """What the unfolded net tells."""
+    if found is None:
+        return None
+    names = EngineNames(net)
+    transitions = {t.index: names.transition(t.index) for t in net.transitions}
+    return unfolded_row(found, transitions, {p.index: p.name for p in net.places})
 
 
 def _covering_row(net: FlatNet, run: Covering | None) -> dict[str, Any] | None:

@@ -10,6 +10,7 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.path import Step, steps, summary
 from pn2code.verify.answers.properties import Answer, Evidence
+from pn2code.verify.exploring.unfolded import in_words
 
 _RULE = "-" * 72
 _MARKS = {"yes": "yes", "no": "NO", "inconclusive": "?"}
@@ -56,6 +57,8 @@ def remarks(a: Answer) -> list[str]:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
         seen = f"{basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}"
         found.append(f"rests on this: {'; '.join((seen, *a.assumes))}")
+    if a.methods:
+        found.append(f"found by {in_words(a.methods)}")
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found

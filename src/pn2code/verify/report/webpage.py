@@ -31,7 +31,7 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.exploring.result_rows import cut
-from pn2code.verify.report import control_text, html, properties_text
+from pn2code.verify.report import control_text, html, properties_text, unfolded_text
 from pn2code.verify.report.text import bounded_places, left_out
 
 MOST_STEPS = 200
@@ -131,7 +131,7 @@ def webpage(
                 fair=fair,
             )
         ],
-        statistics=list(_statistics(found)),
+        statistics=list(_statistics(net, found)),
         bounds=_bounds(net, found),
         markings=list(_markings(found)),
         transitions=_transitions(net, found),
@@ -228,7 +228,7 @@ def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str
     return said
 
 
-def _statistics(found: Exploration) -> list[tuple[str, str]]:
+def _statistics(net: FlatNet, found: Exploration) -> list[tuple[str, str]]:
     rows = [("Nodes", f"{found.nodes:,}")]
     if not found.is_reduced:
         rows.append(("Arcs", f"{found.arcs:,}"))
@@ -238,6 +238,7 @@ def _statistics(found: Exploration) -> list[tuple[str, str]]:
     return [
         *rows,
         *((f"{name}: complete?", f"{what}.") for name, what in basis.complete(found)),
+        *((name, f"{what}.") for name, what in unfolded_text.rows(net, found)),
         ("Depth", f"{found.depth:,}"),
         ("Exploration", f"{found.seconds:.2f} s, {found.states_per_second:,.0f} markings/s"),
         ("Compilation", f"{found.compile_seconds:.1f} s"),

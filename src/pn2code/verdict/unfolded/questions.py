@@ -1,0 +1,138 @@
+"""What is asked of an unfolded net: its properties, and what a report on a state space says of places and transitions.
+
+made = Questions.of(game, unfolding, properties)
+made.tables, made.properties                 # for `pn2code.contest.portfolio.answers`
+made.refused["p"]                            # why a property cannot be asked, as a clause
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pn2code.base.frozen import frozen
+from pn2code.contest.examinations import Asked, Part
+from pn2code.contest.formulas import Formula, FormulaError, Op
+from pn2code.contest.tables import Tables
+from pn2code.properties import meaning as m
+from pn2code.semantics.game.token_game import Game
+from pn2code.unfold.net import Unfolding
+from pn2code.verdict.unfolded.conditions import (
+    Conditions,
+    NotTranslatedError,
+    joined,
+    name,
+    transition_name,
+)
+
+DEAD = "dead"
+"""The name of the question whether there is a dead marking."""
+
+
+@frozen
+class Questions:
+    """The tables of a net, and questions about them.
+
+    Args:
+        tables: the unfolded net; names are those of `conditions.name` and `conditions.transition_name`.
+        properties: a question for each property that can be asked, by its name.
+        shown: of those that a marking decides, what is looked for, as a question: where it is found a run shows the
+            answer.
+        refused: why others cannot be.
+    """
+
+    tables: Tables
+    properties: tuple[Asked, ...]
+    shown: Mapping[str, str]
+    refused: Mapping[str, str]
+
+    @staticmethod
+    def of(game: Game, unfolding: Unfolding, properties: m.Properties) -> Questions:
+        """Those about a net.
+
+        Raises:
+            ValueError: the net has something that is not in the tables.
+        """
+        plain = Tables.of(unfolding)
+        conditions = Conditions(game, unfolding, properties.predicates)
+        translated: dict[str, tuple[str, Formula]] = {}
+        refused: dict[str, str] = {}
+        for p in properties.properties:
+            try:
+                translated[p.name] = _translated(conditions, p.asked)
+            except NotTranslatedError as problem:
+                refused[p.name] = str(problem)
+        net = unfolding.net
+        of: dict[int, list[int]] = {t.index: [] for t in net.transitions}
+        for t in unfolding.transitions:
+            of[t.transition].append(t.index)
+        named = {name(u): (u,) for u in sorted(conditions.used)}
+        places = {f"p{i}": own for i, own in enumerate(unfolding.of_place)}
+        tables = Tables(
+            plain.initial,
+            plain.pre,
+            plain.post,
+            {**named, **places},
+            {transition_name(i): tuple(own) for i, own in of.items()},
+        )
+        questions: list[Asked] = []
+        shown: dict[str, str] = {}
+        for which, (kind, formula) in translated.items():
+            asked = next(p.asked for p in properties.properties if p.name == which)
+            try:
+                if kind == "reach":
+                    is_dead = asked == m.Invariant(m.negation(m.DEAD))
+                    text = "reach dead" if is_dead else f"reach {tables.formula(formula)}"
+                    is_turned = not isinstance(asked, m.Invariant) or asked.wanted
+                    questions.append(Asked(which, (Part("reach", text),), is_turned=is_turned))
+                    shown[which] = text
+                else:
+                    questions.append(Asked(which, formula=formula, kind=kind))
+            except FormulaError as problem:
+                refused[which] = str(problem)
+        return Questions(tables, tuple(questions), shown, refused)
+
+    def dead(self) -> Asked:
+        """Whether there is a dead marking."""
+        return Asked(DEAD, (Part("reach", "reach dead"),))
+
+    def transitions(self, which: Sequence[int]) -> list[Asked]:
+        """Of each of some transitions, by index, whether it can occur."""
+        found = []
+        for i in which:
+            own = self.tables.transitions[transition_name(i)]
+            if own:
+                text = f"reach enabled {len(own)} {' '.join(map(str, own))}"
+                found.append(Asked(transition_name(i), (Part("reach", text),)))
+        return found
+
+    def bounds(self, which: Sequence[int]) -> list[Asked]:
+        """Of each of some places, by index, how many tokens it holds at most."""
+        found = []
+        for i in which:
+            own = self.tables.places[f"p{i}"]
+            if own:
+                text = f"bound {self.tables.sum(dict.fromkeys(own, 1), 0)}"
+                found.append(Asked(f"p{i}", (Part("bound", text),)))
+        return found
+
+
+def _translated(conditions: Conditions, asked: m.Asked) -> tuple[str, Formula]:
+    """The kind of a question, and what it asks: of "reach" what is looked for in a marking."""
+    match asked:
+        case m.Invariant(condition):
+            return "reach", conditions.branching(m.negation(condition))
+        case m.Bound(place, low, high):
+            held = conditions.sum_of(place)
+            wrong: list[Formula] = []
+            if high is not None:
+                wrong.append(Op("not", (conditions.at_most(held, high),)))
+            if low:
+                wrong.append(conditions.at_most(held, low - 1))
+            return "reach", joined("or", wrong)
+        case m.Branching(formula):
+            return "ctl", conditions.branching(formula)
+        case m.Linear(formula, ()):
+            return "ltl", Op("A", (conditions.linear(formula),))
+        case m.Linear():
+            raise NotTranslatedError("it assumes fairness")
+    raise NotTranslatedError("it counts steps or time")
