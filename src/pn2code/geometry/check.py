@@ -24,7 +24,8 @@ from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_held
 from pn2code.geometry.large import MOST_OF_PART, answer_of, sought_in
-from pn2code.geometry.look import LATE, Look, Options
+from pn2code.geometry.look import Look, Options
+from pn2code.geometry.progress import LATE
 from pn2code.geometry.words import reason
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell

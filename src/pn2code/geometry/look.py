@@ -9,14 +9,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import field
 from pathlib import Path
 
 from pn2code.base.deadline import OverError
-from pn2code.base.frozen import frozen, record
+from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Around, Layout, Move, Open, Pair, Proposal, Verdict
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.around import around_of
 from pn2code.geometry.compare import Comparison
@@ -25,6 +24,7 @@ from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.part_names import as_in_runs, as_seen, gap_as_seen, like, shown
 from pn2code.geometry.pieces import ROUNDING
+from pn2code.geometry.progress import LATE, Meeting, Progress, Seen
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
@@ -64,86 +64,6 @@ class Options:
     stage: Callable[[str], None] = lambda _text: None
     jobs: int = 1
     say: Say = silent
-
-
-@frozen(eq=False)
-class _Meeting:
-    """Two that do not surely keep apart, and where that is so first."""
-
-    robots: tuple[str, str]
-    transitions: tuple[str, str]
-    doing: tuple[str, str]
-    apart: Apart
-    met: Met
-    things: tuple[str, str] = ("", "")
-    around: Around | None = None
-
-    @property
-    def is_touch(self) -> bool:
-        """Whether they touch; else it is not known."""
-        return self.apart.outcome == "touch"
-
-    @property
-    def told(self) -> tuple[object, ...]:
-        """What is told of it: where it is the same, it is one."""
-        gap = self.apart.where
-        links = (gap.a, gap.b) if gap is not None else None
-        return self.robots, self.transitions, self.doing, self.things, self.apart.outcome, links
-
-
-@frozen
-class Seen:
-    """What was seen of a layout.
-
-    Args:
-        arms: what does not surely keep apart of two arms, by what they do; parts: of arms and parts that stand.
-    """
-
-    moves: tuple[Move, ...]
-    arms: dict[tuple[Side, Side], Pair]
-    parts: tuple[Pair, ...]
-
-    @property
-    def pairs(self) -> tuple[Pair, ...]:
-        """All that does not surely keep apart."""
-        return tuple(dict.fromkeys((*self.arms.values(), *self.parts)))
-
-
-LATE = (
-    "the time was up before everything was looked at: a NO is certain, of all else nothing is known"
-)
-
-
-@record
-class Progress:
-    """What has been found so far, for those whose time is up.
-
-    Args:
-        found: the situations that are looked at; seen: all of them, when that is done.
-        at_start, rows, handled: moves that were looked at; arms, parts: what does not surely keep apart.
-        moves, pairs: what was found wrong before in other parts of the cell.
-    """
-
-    found: Situations | None = None
-    seen: Seen | None = None
-    at_start: tuple[Move, ...] = ()
-    rows: dict[tuple[int, str], Move] = field(default_factory=dict)
-    handled: dict[tuple[str, str, str], Move] = field(default_factory=dict)
-    arms: dict[tuple[Side, Side], _Meeting] = field(default_factory=dict)
-    parts: dict[tuple[str, str, str], _Meeting] = field(default_factory=dict)
-    moves: tuple[Move, ...] = ()
-    pairs: tuple[Pair, ...] = ()
-
-    def begin(self, found: Situations) -> None:
-        """Situations are looked at now."""
-        self.found, self.seen = found, None
-        self.rows, self.handled, self.arms, self.parts = {}, {}, {}, {}
-
-    def keep(self, moves: Iterable[Move], pairs: Iterable[Pair]) -> None:
-        """What was found in the situations that were looked at last; of it what is wrong is certain."""
-        self.moves = tuple(m for m in moves if m.answer == "no")
-        self.pairs = tuple(p for p in pairs if p.answer == "no")
-        self.found = None
 
 
 class Look:
@@ -460,7 +380,7 @@ class Look:
         pair: tuple[Activity, Activity],
         sides: tuple[Side, Side],
         met: Met,
-        met_: dict[tuple[Side, Side], _Meeting],
+        met_: dict[tuple[Side, Side], Meeting],
         found: Situations,
     ) -> bool:
         """Notes where two activities do not surely keep apart; gives whether they touch."""
@@ -488,7 +408,7 @@ class Look:
                 robots, things = (leg.robot, other.robot), (thing, its_thing)
                 legs = (x for x in (*a.legs, *b.legs) if x[0] is leg or x[0] is other)
                 around = around_of(found, met, legs)
-                met_[own] = _Meeting(
+                met_[own] = Meeting(
                     robots, (first, second), (does, its), apart, met, things, around
                 )
             if is_touch and own == sides:
@@ -506,16 +426,16 @@ class Look:
         where = stands_at(self.cell.robot(leg.robot), leg.start)
         return f"stands at {where}" if where else "stands", ""
 
-    def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
+    def _reported(self, found: Situations, meetings: Iterable[Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
         meetings = list(meetings)
-        first: dict[tuple[object, ...], _Meeting] = {}
+        first: dict[tuple[object, ...], Meeting] = {}
         for m in meetings:
             first.setdefault(m.told, m)
         touching = [m for m in first.values() if m.apart.outcome == "touch"]
         touching.sort(key=lambda m: m.apart.nearest)
         deepest = set({m.robots: m for m in reversed(touching)}.values())
-        depths: dict[_Meeting, Apart] = {}
+        depths: dict[Meeting, Apart] = {}
         begun = self.comparison.sweeper.queries
         for m in sorted(touching, key=lambda m: m not in deepest):
             asked = self.comparison.sweeper.queries - begun
@@ -546,7 +466,7 @@ class Look:
             stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
             does = (words(leg.command), stands)
             around = around_of(found, met, [(leg, contents)])
-            bad[key] = _Meeting((leg.robot, ""), (t, ""), does, apart, met, around=around)
+            bad[key] = Meeting((leg.robot, ""), (t, ""), does, apart, met, around=around)
         return self._reported(found, bad.values())
 
     # --- words and runs --------------------------------------------------------------------------
@@ -595,7 +515,7 @@ def _who(found: Situations, element: int) -> tuple[str, str]:
     return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
 
 
-def _met(meeting: _Meeting, apart: Apart, run: Run | None) -> Pair:
+def _met(meeting: Meeting, apart: Apart, run: Run | None) -> Pair:
     """Two things that do not surely keep apart; a part has no robot, and no joints."""
     is_touch = apart.outcome == "touch"
     says = touch_in_words(apart) if is_touch else as_in_runs(apart.why)

@@ -81,9 +81,8 @@ def waits(
         yield from waits(m, to, here, after, now + seconds)
 
 
-@pytest.mark.parametrize("seed", range(amount(120, 3000)))
-def test_a_wait_is_as_long_as_the_longest_of_all_runs(seed: int) -> None:
-    m = made(Random(seed))
+def unstopped(m: Made) -> Unstopped:
+    """The runs that nothing stops, as they are looked for."""
     arcs = [[(to, s * NS, mark) for to, s, mark in x] for x in m.arcs]
     search: Any = SimpleNamespace(
         successors=arcs,
@@ -98,8 +97,47 @@ def test_a_wait_is_as_long_as_the_longest_of_all_runs(seed: int) -> None:
             running=SimpleNamespace(owing={1: 5, 2: 6}),
         ),
     )
-    runs = Unstopped(search, m.timeout * NS)
+    return Unstopped(search, m.timeout * NS)
+
+
+def lost(
+    m: Made, node: int, since: Mapping[int, int], now: int, *, is_waiting: bool, is_lost: bool
+) -> bool:
+    """Whether a run comes to where the event is not possible any more, and goes on without being stopped."""
+    here = {p: since.get(p, now) for p, nodes in m.owed.items() if node in nodes}
+    left = min((t + m.timeout - now for t in here.values()), default=FOREVER)
+    is_lost |= is_waiting and not possible(m, node)
+    if node in m.stopped:
+        return False
+    if node in m.ends or (node in m.stuck and left == FOREVER):
+        return is_lost
+    return any(
+        lost(
+            m, to, here, now + seconds,
+            is_waiting=mark == ASK or (is_waiting and mark != END), is_lost=is_lost,
+        )
+        for to, seconds, mark in m.arcs[node]
+        if not (seconds > left or (seconds == left and left > 0))
+    )  # fmt: skip
+
+
+def possible(m: Made, node: int) -> bool:
+    """Whether the event may still come, also where a run would be stopped before."""
+    return any(mark == END or possible(m, to) for to, _, mark in m.arcs[node])
+
+
+@pytest.mark.parametrize("seed", range(amount(120, 3000)))
+def test_a_wait_is_as_long_as_the_longest_of_all_runs(seed: int) -> None:
+    m = made(Random(seed))
+    runs = unstopped(m)
     longest = max(waits(m, 0, {}, None), default=0)
     for limit in range(10):
         found = runs.too_long(lambda mark: mark == ASK, lambda mark: mark == END, limit * NS + TIE)
         assert (found is not None) == (longest > limit), (limit, longest)
+
+
+@pytest.mark.parametrize("seed", range(amount(120, 3000)))
+def test_an_event_is_waited_for_in_vain_where_some_run_does(seed: int) -> None:
+    m = made(Random(seed))
+    found = unstopped(m).never(lambda mark: mark == ASK, lambda mark: mark == END, ())
+    assert (found is not None) == lost(m, 0, {}, 0, is_waiting=False, is_lost=False)
