@@ -177,9 +177,21 @@ export class Beside {
     }
     const body = add("Time of B");
     this.timeline = new Timeline(body, this.run, /** @type {any} */ (this.pacing), {
-      onBar: (bar) => this.pacing.seek(bar.start), onStep: (k) => this.pacing.step(k),
+      onBar: (bar) => this.onBar(bar), onStep: (k) => this.pacing.step(k),
     });
     this.marks();
+  }
+
+  /**
+   * A bar of the second run leads to its moment and its transition, as one of the first does.
+   * @param {any} bar
+   */
+  onBar(bar) {
+    this.pacing.seek(bar.start);
+    const transition = bar.kind === "activity" ? this.timeline?.firstOf(bar) ?? -1 : bar.transition;
+    if (!(transition >= 0)) return;
+    this.net.show(this.run.net.transitions[transition].instance);
+    this.net.mark(transition, -1);
   }
 
   /** Both axes have a line where a difference begins. */

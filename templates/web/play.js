@@ -298,7 +298,7 @@ function help() {
   const dialogue = el(
     "dialog", { "aria-label": "Keys" }, el("h2", { text: "Keys" }),
     el("dl", {}, ...KEYS.flatMap(([key, what]) => [el("dt", { text: key }), el("dd", { text: what })])),
-    el("p", { class: "note", text: "Click a green transition: it occurs, with a binding at random. Right click: its bindings." }),
+    el("p", { class: "note", text: "Click a green transition: it occurs, with a binding at random. Right click, or a finger that rests: its bindings." }),
     el("p", { class: "buttons" }, el("button", { text: "Close", onclick: () => dialogue.close() })),
   );
   dialogue.addEventListener("close", () => dialogue.remove());

@@ -1117,6 +1117,14 @@ def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: A
         browser.page.get_by_role("tab", name="Time of B").click()
         size = "document.querySelector('.time-of-b canvas').getBoundingClientRect()"
         browser.wait(f"{size}.width > 200 && {size}.height > 60")
+        browser.ask(
+            """() => {
+                const { beside } = replay.page;
+                beside.onBar({ kind: "tool", start: 6, transition: beside.course.transition[0] });
+            }"""
+        )
+        assert browser.ask(at)[2:] == [6.0, 3]
+        assert browser.page.locator("#net-2 .selected").count() >= 1
         assert complaints(browser) == []
         assert browser.errors == []
 

@@ -152,7 +152,7 @@ def test_the_time_can_have_more_of_the_height(tmp_path: Path, chromium: Any) -> 
         divider = browser.page.get_by_role("separator", name="Height of the time axis")
         assert 35 <= int(divider.get_attribute("aria-valuenow") or "") <= 42
         divider.focus()
-        for _ in range(4):
+        for _ in range(5):
             browser.page.keyboard.press("ArrowUp")
         assert seen(browser)["lowest"] >= 0
         now = int(divider.get_attribute("aria-valuenow") or "")

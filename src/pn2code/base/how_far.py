@@ -95,6 +95,11 @@ def counting(what: str, *, noun: str = "", total: int = 0) -> HowFar:
     return HowFar(_LISTENER.get(), what, noun=noun, total=total)
 
 
+def listener() -> Say:
+    """Whoever listens here and now, for what another thread says later."""
+    return _LISTENER.get()
+
+
 def counted(items: Collection[T], what: str) -> Iterator[T]:
     """The items; whoever listens is told how many of them are done."""
     more = counting(what, total=len(items))

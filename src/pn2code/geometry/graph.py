@@ -44,6 +44,7 @@ from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction, default_memory
 from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Generated, Sizes
+from pn2code.verify.exploring.telling import telling
 
 MOST_STATES = MOST_WRITTEN
 """States of a cell that are looked at before it is tried otherwise, see `most_held` ..."""
@@ -251,7 +252,7 @@ def explore_cell(
             questions="".join(f"{line}\n" for line in running.lines(first=True)),
             evidence=Path(folder),
             quick=True,
-            progress=lambda said: _tell(said, say),
+            progress=telling(say, "exploring"),
         )
         found = explore(running.net, storage, limits, d, options)
         if found is None:
@@ -267,13 +268,6 @@ def explore_cell(
         if not why and seen != (found.nodes, found.arcs):
             graph.why = "file"
         return graph
-
-
-def _tell(said: Mapping[str, Any], say: Say) -> None:
-    """How far an exploration is."""
-    states, waiting = said.get("states", 0), said.get("frontier", 0)
-    if said.get("phase", "explore") == "explore" and states:
-        say(f"exploring: {states:,} states, {waiting:,} of them waiting")
 
 
 def most_held() -> int:

@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import listener
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.place_finder import PlaceFinder
@@ -36,6 +37,7 @@ from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
 from pn2code.verify.exploring import place_capacity
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits, cores
+from pn2code.verify.exploring.telling import telling
 
 MOST_PROCESSOR_SECONDS = 900.0
 """For one exploration. `MOST_STATES` take a minute or two of it: only a net whose inscriptions compute for very long,
@@ -187,7 +189,8 @@ def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) 
         traces=0,
         most_in_turns=MOST_IN_TURNS,
     )
-    plan = replace(plan, options=ExploreOptions(quick=True))
+    tell = telling(listener(), "proving what the programs rely on")
+    plan = replace(plan, options=ExploreOptions(quick=True, progress=tell))
     try:
         found = control.examine(partition, plan, limits, own)
         if found is not None and limits.threads > 1 and any(c.why == "states" for c in found.open):
