@@ -169,7 +169,7 @@ class Cluster:
             return
         if not gently:
             client.cancel(self._futures[first:])
-        client.run(task.end, self._job, first, gently=gently, on_error="ignore", wait=False)
+        client.run(task.end_soon, self._job, first, gently, on_error="ignore", wait=False)
 
 
 def _same(job: Job) -> Job:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pn2code.base.frozen import frozen
 
-DEPTHS = (3_000, 1_000, 100, 300)
+DEPTHS = (100, 1_000, 300, 3_000)
 """Steps of a run at most, in turn. The token game plays no longer ones again, so nothing is looked for beyond."""
 STATES = 1_000_000
 """Markings that a search looks at, unless `--max-states` says how many."""

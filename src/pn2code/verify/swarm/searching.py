@@ -32,8 +32,10 @@ if TYPE_CHECKING:
     from pn2code.verify.exploring.programs import Generated
 
 _LEAST_S = 1e-6
-_SEARCH_PART = 0.85
+_SEARCH_PART = 0.75
 """Of the time that is left, what the searches may take; the rest is for telling what was found."""
+_LATE_PART = 0.85
+"""The same, until a search breaks off what it works out, and says what it knows."""
 
 
 @record
@@ -142,6 +144,7 @@ def _common(limits: Limits) -> list[str]:
         ("--multiset-limit", 0),
         ("--traces", min(limits.traces, 1)),
         ("--max-seconds", None if left is None else max(left * _SEARCH_PART, _LEAST_S)),
+        ("--late-seconds", None if left is None else max(left * _LATE_PART, _LEAST_S)),
     ]
     return [text for name, value in given if value is not None for text in (name, str(value))]
 
