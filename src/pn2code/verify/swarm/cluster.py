@@ -119,7 +119,8 @@ class Cluster:
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # any port that is free
+                worker_dashboard_address=None,
                 memory_limit=0,  # the explorers count their own
                 local_directory=folder,
                 silence_logs=logging.CRITICAL,
