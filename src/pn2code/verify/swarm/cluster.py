@@ -137,10 +137,15 @@ class Cluster:
         self._job = job.name
         # One task makes the job, so that it is sent once to each worker, and can be made again where one has gone.
         common = client.submit(_same, job, key=f"job-{job.name}", pure=False)
-        self._futures = [
-            client.submit(task.run, common, i, own, key=f"search-{job.name}-{i}", pure=False)
-            for i, own in enumerate(searches)
-        ]
+        count = len(searches)
+        self._futures = client.map(
+            task.run,
+            [common] * count,
+            range(count),
+            searches,
+            key=[f"search-{job.name}-{i:06}" for i in range(count)],
+            pure=False,
+        )
         for i, future in enumerate(self._futures):
             future.add_done_callback(lambda _, i=i: done.put(i))
         left = len(searches)
@@ -154,7 +159,9 @@ class Cluster:
                 left -= 1
                 future = self._futures[number]
                 if future.status == "finished":
-                    yield number, future.result()
+                    result = future.result()
+                    future.release()  # the worker need not keep it
+                    yield number, result
                 elif future.status == "error":
                     yield number, {"said": None, "problem": str(future.exception())}
                 else:

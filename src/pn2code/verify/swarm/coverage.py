@@ -12,6 +12,7 @@ near more often than what is far: there may be many more markings than estimated
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Sequence
 
@@ -47,10 +48,14 @@ class Coverage:
 
 def coverage(sketches: Sequence[Sequence[int]], most: int) -> Coverage:
     """From the least hashes of each search, in ascending order, `most` at most."""
-    seen = Counter(h for sketch in sketches for h in set(sketch))
-    sample = sorted(seen)[:most]
+    sample: list[int] = []
+    for sketch in sketches:
+        enough = bisect_right(sketch, sample[-1]) if len(sample) == most else len(sketch)
+        sample = sorted({*sample, *sketch[:enough]})[:most]
+    chosen = frozenset(sample)
+    seen = Counter(h for sketch in sketches for h in chosen.intersection(sketch))
     # Where a search has told as many as it may, nothing is known of greater ones.
-    is_exact = len(seen) < most and all(len(sketch) < most for sketch in sketches)
+    is_exact = len(sample) < most and all(len(sketch) < most for sketch in sketches)
     markings = float(len(sample)) if is_exact else estimated(sample)
     times = Counter(seen[h] for h in sample)
     alone = times[1] / len(sample) if sample else 0.0

@@ -11,6 +11,7 @@ from __future__ import annotations
 import secrets
 import tempfile
 import time
+from array import array
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,6 +67,9 @@ class _Course:
                 return False  # it was ended before it had anything to say
             self.problem = number, result["problem"]
         else:
+            own = said["swarm"]
+            # Of ten thousand searches the hashes alone would take hundreds of megabytes as numbers of Python.
+            own["sketch"] = array("Q", own["sketch"])
             self.found[number], self.files[number] = said, result["files"]
             if not is_event(said, ending):
                 return False
