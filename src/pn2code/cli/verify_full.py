@@ -61,7 +61,7 @@ def full(said: Said) -> str:
 
 
 def _told(said: Said, trace: Trace, goal: str) -> str:
-    head = f"Shortest run to {goal}: {trace.steps} steps, {trace.file}"
+    head = f"{'Shortest run' if trace.node else 'Run'} to {goal}: {trace.steps} steps, {trace.file}"
     try:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:

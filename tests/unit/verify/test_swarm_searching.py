@@ -101,8 +101,8 @@ def test_each_order_gives_the_same(tmp_path: Path) -> None:
     reports = []
     for order in itertools.permutations(range(4)):
         reports.append(searched(Told(found, order), tmp_path))
-        assert (tmp_path / "N.query-2-0.trace.jsonl").read_bytes() == b"run 2"
-        assert not (tmp_path / "N.query-3-0.trace.jsonl").exists()
+        assert (tmp_path / "N.query-0.trace.jsonl").read_bytes() == b"run 2"
+        assert len(list(tmp_path.iterdir())) == 1
     assert all(r == reports[0] for r in reports)
     first = reports[0]
     assert (first["why"], first["nodes"], first["fired"]) == ("swarm", 12, [3])
@@ -178,6 +178,18 @@ def test_dead_markings_of_walks_are_counted_once(tmp_path: Path) -> None:
         Told([said(0, OPEN, dead_count=2), said(1, OPEN, dead_count=9)], (0, 1)), tmp_path
     )
     assert found["dead_count"] == 2
+
+
+def test_the_first_run_to_each_goal_is_kept(tmp_path: Path) -> None:
+    told = [said(i, OPEN, dead_count=1) for i in range(3)]
+    for number in (1, 2):
+        trace = {"node": 0, "file": "dead-0.trace.jsonl", "steps": number}
+        told[number]["said"]["swarm"]["dead_trace"] = trace
+        told[number]["files"] = {"dead-0.trace.jsonl": b"dead %d" % number}
+    found = searched(Told(told, (2, 1, 0)), tmp_path)
+    (run,) = tmp_path.iterdir()
+    assert found["traces"] == [{"node": 0, "file": str(run), "steps": 1}]
+    assert (run.name, run.read_bytes()) == ("N.dead-0.trace.jsonl", b"dead 1")
 
 
 def test_the_number_decides_all_about_a_search() -> None:

@@ -13,6 +13,7 @@ import tempfile
 import time
 from array import array
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,7 +136,8 @@ def search(
     if not counted:
         return nothing(net, limits, course.why or "interrupted")
     seconds = time.perf_counter() - began
-    given = {i: _with_runs(course, i, options, d) for i in counted}
+    runs = _Runs(course.files, options, d)
+    given = {i: runs.kept(i, course.found[i]) for i in counted}
     return merged(given, swarm.searches, course.why or SWARM, seconds, swarm.pool.workers)
 
 
@@ -197,43 +199,53 @@ def _progress(course: _Course, seconds: float) -> dict[str, Any]:
     }
 
 
-def _with_runs(
-    course: _Course, number: int, options: ExploreOptions, d: Diagnostics
-) -> Mapping[str, Any]:
-    """What a search has said, with its runs in files of ours; those that cannot be written are none."""
-    said = dict(course.found[number])
-    files = course.files[number]
+@record
+class _Runs:
+    """The runs of searches, in their order: the first to each goal is kept in a file of ours.
 
-    def kept(name: str, path: Path | None) -> str | None:
-        if name not in files or path is None:
+    Args:
+        files: by number, what searches have written.
+        options: where files go.
+        d: gets the warnings.
+        known: goals to which a run is kept.
+    """
+
+    files: Mapping[int, Mapping[str, bytes]]
+    options: ExploreOptions
+    d: Diagnostics
+    known: set[str] = field(default_factory=set)
+
+    def kept(self, number: int, found: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What a search has said, with the files of its runs; those that cannot be written are none."""
+        answers = []
+        for i, answer in enumerate(found.get("queries") or ()):
+            run = self._file(number, f"{QUERY}{i}", self.options.evidence)
+            answers.append({**answer, "trace": run, "steps": answer["steps"] if run else None})
+        dead, error = found["swarm"]["dead_trace"], found["error"]
+        if dead is not None:
+            run = self._file(number, f"{DEAD}0", self.options.traces)
+            dead = {**dead, "file": run} if run is not None else None
+        if error is not None and error.get("trace"):
+            run = self._file(number, f"{ERROR}0", self.options.traces)
+            error = {**error, "trace": {**error["trace"], "file": run} if run else None}
+        swarm = {**found["swarm"], "dead_trace": dead}
+        return {**found, "queries": answers, "swarm": swarm, "error": error}
+
+    def _file(self, number: int, goal: str, folder: Path | None) -> str | None:
+        """The file of a run; None: there is none, or one to the same goal is kept already."""
+        written = self.files[number].get(f"{goal}.trace.jsonl")
+        if written is None or folder is None or goal in self.known:
             return None
+        path = folder / f"{self.options.stem}.{goal}.trace.jsonl"
         try:
-            path.write_bytes(files[name])
+            path.write_bytes(written)
         except OSError:
-            d.warning(
+            self.d.warning(
                 TRACE_UNWRITABLE,
-                f"a run cannot be written into `{path.parent}`",
-                Origin(str(path.parent)),
+                f"a run cannot be written into `{folder}`",
+                Origin(str(folder)),
                 hint="give another folder with `--traces DIR`",
             )
             return None
+        self.known.add(goal)
         return str(path)
-
-    def of(folder: Path | None, name: str) -> Path | None:
-        return None if folder is None else folder / f"{options.stem}.{name}.trace.jsonl"
-
-    answers = []
-    for i, answer in enumerate(said.get("queries") or ()):
-        run = kept(f"{QUERY}{i}.trace.jsonl", of(options.evidence, f"{QUERY}{number}-{i}"))
-        answers.append({**answer, "trace": run, "steps": answer["steps"] if run else None})
-    said["queries"] = answers
-    dead = said["swarm"]["dead_trace"]
-    if dead is not None:
-        run = kept(f"{DEAD}0.trace.jsonl", of(options.traces, f"{DEAD}{number}"))
-        dead = {**dead, "file": run} if run is not None else None
-    said["swarm"] = {**said["swarm"], "dead_trace": dead}
-    error = said["error"]
-    if error is not None and error.get("trace"):
-        run = kept(f"{ERROR}0.trace.jsonl", of(options.traces, f"{ERROR}{number}"))
-        said["error"] = {**error, "trace": {**error["trace"], "file": run} if run else None}
-    return said
