@@ -20,6 +20,7 @@ def seen(swarm: Mapping[str, Any]) -> str:
     if total is None:
         return f"{text}; how many there are, one search alone does not tell"
     return (
-        f"{text}, {swarm['seen_by_one_search']:.0%} of them by one search alone; by that there are {total:,} at least, "
-        f"so that {part:.0%} were seen at most (an estimate, and no proof: all searches begin at the initial marking)"
+        f"{text}, {swarm['seen_by_one_search']:.0%} of them by one search alone; by that there are about {total:,} or "
+        f"more, so that {part:.0%} or less were seen (an estimate, and no proof: all searches begin at the initial "
+        "marking)"
     )

@@ -31,7 +31,7 @@ class Coverage:
         markings: different ones that were looked at, all searches together.
         is_exact: whether that is counted and not estimated (apart from hashes that are the same by chance).
         alone: the part of them that one search alone has looked at.
-        total: markings that can be reached, at least; None: one search alone tells nothing of that.
+        total: markings that can be reached, or there are more; None: one search alone tells nothing of that.
     """
 
     searches: int
@@ -42,7 +42,7 @@ class Coverage:
 
     @property
     def part(self) -> float | None:
-        """The part of all markings that was looked at, at most; None: not known."""
+        """The part of all markings that was looked at, or it is less; None: not known."""
         return None if not self.total else self.markings / self.total
 
 
@@ -74,5 +74,5 @@ def estimated(sample: Sequence[int]) -> float:
 
 
 def unseen(once: float, twice: float, searches: int) -> float:
-    """Markings that nobody has seen, at least, if so many were seen by one search and by two."""
+    """Markings that nobody has seen, or more, if so many were seen by one search and by two."""
     return (searches - 1) / searches * once * max(once - 1.0, 0.0) / (2.0 * (twice + 1.0))
