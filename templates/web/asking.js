@@ -2,6 +2,7 @@
 /** Properties: asked in the background, answered with a run that shows it. */
 
 import { el } from "./dom.js";
+import { howFar } from "./howfar.js";
 import { diagnostic, field, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
@@ -44,7 +45,7 @@ export class Asking {
     const told = el("p", { class: "note", text: "exploring …" });
     const stop = el("button", { class: "stop", text: "Stop", onclick: () => this.link.say("stop asking") });
     const item = el("li", {}, el("code", { text }), told, stop);
-    this.rows.set(answer.result.number, { item, told, stop });
+    this.rows.set(answer.result.number, { item, told, stop, what: "", howFar: howFar() });
     this.list.prepend(item);
   }
 
@@ -52,7 +53,9 @@ export class Asking {
   hear(said) {
     if (said.asking !== undefined) {
       const row = this.rows.get(said.asking);
-      if (row) row.told.textContent = `${said.what || "exploring"} … ${said.nodes.toLocaleString("en")} ${said.what ? "states" : "markings"}`;
+      if (!row) return;
+      if (row.what !== said.what) Object.assign(row, { what: said.what, howFar: howFar() });
+      row.told.textContent = `${said.what || "exploring"}, ${said.what ? "states" : "markings"}: ${row.howFar(said.nodes)}`;
       return;
     }
     const row = this.rows.get(said.answer);

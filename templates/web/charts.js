@@ -5,7 +5,7 @@ import { upperBound } from "./course.js";
 import { fitting } from "./dom.js";
 
 /** How high a line of a legend is, and how wide what shows the colour. */
-export const LABEL = 11;
+export const LABEL = 13;
 const SWATCH = 20;
 /** Names of rows stand right of the sign that they can be folded. */
 export const NAME = 20;
@@ -18,9 +18,9 @@ const BESIDE = 78;
 const MOST = 100;
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 /** Below the title of a chart its legend begins. */
-const LEGEND = 21;
+const LEGEND = 22;
 /** More curves have a line for each arm instead of one of their own. */
-const MOST_LINES = 5;
+const MOST_LINES = 4;
 /** Between charts, and above them (CSS pixels). */
 const GAP = 8;
 
@@ -188,6 +188,11 @@ export function drawChart(c, axis, chart, w) {
     }
     c.stroke();
   });
+  c.fillStyle = axis.ink?.faint ?? "";
+  c.textAlign = "right";
+  const line = at(chart.limit);
+  c.fillText(String(Number(chart.limit.toPrecision(3))), w - 2, line < y + 13 ? line + 8 : line - 7);
+  c.textAlign = "left";
   c.restore();
   drawLegend(c, axis, chart);
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** The generated programs: the lines of what occurs, and of what a robot does, are lit; a line leads to its transition. */
+/** The generated programs: the lines of what occurs, of what a robot does, and of what was chosen are lit; a line leads to its transition. */
 
 import { el } from "./dom.js";
 
@@ -26,6 +26,9 @@ export class Code {
     this.shown = -1;
     /** The line that keys have gone to; 0: none. */
     this.line = 0;
+    /** The transition that was chosen, until another moment is shown; -1: none. */
+    this.chosen = -1;
+    this.chosenAt = "";
     /** What was lit last. */
     this.key = "";
     this.choice = el(
@@ -114,13 +117,25 @@ export class Code {
     return best;
   }
 
-  /** What is under way: [file, first line, last line, kind]. */
+  /**
+   * Shows the lines of a transition, wherever it was chosen.
+   * @param {number} transition
+   */
+  select(transition) {
+    this.chosen = transition;
+    this.chosenAt = `${this.clock.k} ${this.clock.t}`;
+    this.update(true);
+  }
+
+  /** What is under way, and what was chosen: [file, first line, last line, kind]. */
   now() {
     const { k, t, course } = this.clock;
+    if (`${k} ${t}` !== this.chosenAt) this.chosen = -1;
     /** @type {[number, number, number, string][]} */
     const rows = [];
     const occurred = k ? course.transition[k - 1] : -1;
     for (const [file, first, last] of this.elements.get(occurred) ?? []) rows.push([file, first, last, "occurs"]);
+    for (const [file, first, last] of this.elements.get(this.chosen) ?? []) rows.push([file, first, last, "chosen"]);
     for (const bar of this.run.happenings?.bars ?? []) {
       if (bar.start > t || t >= bar.end) continue;
       const name = `${this.run.happenings.parties[bar.party].name}.tdl`;
@@ -148,7 +163,8 @@ export class Code {
       this.marks.append(mark);
     }
     // A script declares what a transition takes before its lines: those are meant, the longest piece.
-    const lit = rows.filter(([, , , kind]) => kind === "occurs");
+    const kinds = ["chosen", "occurs"].map((wanted) => rows.filter(([, , , kind]) => kind === wanted));
+    const lit = kinds.find((found) => found.length) ?? [];
     const row = lit.length ? lit.reduce((a, b) => (b[2] - b[1] > a[2] - a[1] ? b : a)) : rows[0];
     if (!row || !isShowing) return;
     const view = this.view.clientHeight;
@@ -156,6 +172,17 @@ export class Code {
     if (top < this.view.scrollTop || top > this.view.scrollTop + view - 4 * LINE) {
       this.view.scrollTop = Math.max(top - view / 3, 0);
     }
+  }
+
+  /**
+   * Where lines of a kind are: for what was chosen the program that is shown does, else a script comes first.
+   * @param {string} wanted
+   * @returns {number | undefined}
+   */
+  fileOf(wanted) {
+    const files = (this.rows ?? []).filter(([, , , kind]) => kind === wanted).map(([file]) => file);
+    if (wanted === "chosen" && files.includes(this.shown)) return this.shown;
+    return files.find((file) => this.files[file].name.endsWith(".tdl")) ?? files[0];
   }
 
   /** @param {boolean} [force] */
@@ -166,10 +193,9 @@ export class Code {
     this.key = key;
     if (!this.view.clientHeight) return;
     if (this.isFollowing) {
-      const script = this.rows.find(([file, , , kind]) => kind === "occurs" && this.files[file].name.endsWith(".tdl"));
-      const row = script ?? this.rows.find(([, , , kind]) => kind === "occurs");
-      if (row && row[0] !== this.shown) {
-        this.show(row[0]);
+      const file = this.fileOf("chosen") ?? this.fileOf("occurs");
+      if (file !== undefined && file !== this.shown) {
+        this.show(file);
         return;
       }
     }

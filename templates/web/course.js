@@ -170,27 +170,31 @@ export class Course {
   }
 
   /**
-   * How many tokens a place held over all steps: where it changed, and what it was from there on.
+   * What a place held over all steps: where it changed, how many tokens it has held from there on, and which one, if all
+   * of them are alike (else -1).
    * @param {number} place
-   * @returns {{step: number, count: number}[]}
+   * @returns {{step: number, count: number, only: number}[]}
    */
   history(place) {
     const { offset, token, count } = this.changes;
-    let n = 0;
-    for (let i = 0; i < this.keys.offset[1]; i++) {
-      if (this.tokens.place[this.keys.token[i]] === place) n += this.keys.count[i];
-    }
-    const rows = [{ step: 0, count: n }];
+    const held = /** @type {Map<number, number>} */ (new Map());
+    const rows = /** @type {{step: number, count: number, only: number}[]} */ ([]);
+    let all = 0;
+    const change = (/** @type {number} */ one, /** @type {number} */ by) => {
+      if (this.tokens.place[one] !== place) return false;
+      const n = (held.get(one) ?? 0) + by;
+      if (n) held.set(one, n);
+      else held.delete(one);
+      all += by;
+      return true;
+    };
+    const note = (/** @type {number} */ step) => rows.push({ step, count: all, only: held.size === 1 ? [...held.keys()][0] : -1 });
+    for (let i = 0; i < this.keys.offset[1]; i++) change(this.keys.token[i], this.keys.count[i]);
+    note(0);
     for (let k = 0; k < this.steps; k++) {
-      let by = 0;
       let changed = false;
-      for (let i = offset[k]; i < offset[k + 1]; i++) {
-        if (this.tokens.place[token[i]] !== place) continue;
-        by += count[i];
-        changed = true;
-      }
-      n += by;
-      if (changed) rows.push({ step: k + 1, count: n });
+      for (let i = offset[k]; i < offset[k + 1]; i++) changed = change(token[i], count[i]) || changed;
+      if (changed) note(k + 1);
     }
     return rows;
   }

@@ -16,6 +16,12 @@ const LETTERS = 30;
 /** @param {string} text */
 const isLong = (text) => text.split("\n").reduce((n, line) => n + Math.max(Math.ceil(line.length / LETTERS), 1), 0) > LINES;
 
+/**
+ * A marking as it can be typed: where it is read, `=~` is an operator of its own, and a text ends on its line.
+ * @param {string} text
+ */
+const typed = (text) => text.replace(/"[^"]*"|=(?=[~#])/g, (found) => (found === "=" ? "= " : found.replace(/\n/g, "\\n")));
+
 export class MarkingList {
   /**
    * @param {HTMLElement} host
@@ -103,7 +109,9 @@ export class MarkingList {
         el("button", { text: "×", "aria-label": "Close the place", onclick: () => this.close() })),
       this.whole, this.change.root, this.told);
     this.edit.hidden = false;
-    this.change.input.value = this.position.counts[p] && !this.position.lengths.has(p) ? this.position.markings[p] : "";
+    const isCut = this.position.lengths.has(p);
+    this.isToFill = isCut && this.position.counts[p] > 0;
+    this.change.input.value = this.position.counts[p] && !isCut ? typed(this.position.markings[p]) : "";
     this.seen = -1;
     this.head();
     this.actions.show(p);
@@ -126,7 +134,10 @@ export class MarkingList {
     this.whole.textContent = this.position.text(p);
     if (!this.position.lengths.has(p)) return;
     const answer = await this.link.ask("place", { place: p });
-    if (answer.ok && p === this.chosen) this.whole.textContent = answer.result.text;
+    if (!answer.ok || p !== this.chosen) return;
+    this.whole.textContent = answer.result.text;
+    if (this.isToFill && this.change && !this.change.input.value) this.change.input.value = typed(answer.result.text);
+    this.isToFill = false;
   }
 
   close() {

@@ -9,6 +9,8 @@ import { findSteps } from "./sent.js";
 const ROW = 24;
 /** How wide the column of a party may be, and how much of the pane all of them: what the messages say is to be seen. */
 const COLUMN = { least: 14, most: 84, all: 0.5 };
+/** So many messages are found at most. */
+const MOST = 20;
 /** Of a party: how high a row of names is, and how far one is from the next one. */
 const NAME = { height: 17, gap: 8 };
 
@@ -23,6 +25,7 @@ export class Messages {
    */
   constructor(host, run, clock, onMessage) {
     this.clock = clock;
+    this.onMessage = onMessage;
     this.messages = run.happenings?.messages ?? [];
     this.parties = run.happenings?.parties ?? [];
     /** @type {number[]} */
@@ -40,11 +43,7 @@ export class Messages {
     this.column = COLUMN.most;
     this.list = new LongList(host, {
       label: "Messages", count: this.messages.length, height: ROW, row: (i) => this.row(i),
-      onRow: (i) => {
-        this.to(i);
-        onMessage(this.messages[i]);
-        this.list.go(i);
-      },
+      onRow: (i) => this.choose(i),
       whole: (i) => (clock.isPlaying ? "" : `${this.messages[i].channel} ${this.messages[i].text}`),
     });
     new ResizeObserver(() => this.fit(host)).observe(host);
@@ -133,6 +132,31 @@ export class Messages {
       while (i >= 0 && this.isNow(i) && (this.steps[i] || this.clock.k) === this.clock.k) i--;
     }
     if (this.messages[i]) this.to(i);
+  }
+
+  /**
+   * To a message, and to its place.
+   * @param {number} i
+   */
+  choose(i) {
+    this.to(i);
+    this.onMessage(this.messages[i]);
+    this.list.go(i);
+  }
+
+  /**
+   * Messages that say something, from the next one on.
+   * @param {string} word in small letters
+   * @returns {import("./search.js").Found[]}
+   */
+  find(word) {
+    const [found, { length }, sent] = [/** @type {import("./search.js").Found[]} */ ([]), this.messages, this.count()];
+    for (let n = 0; n < length && found.length < MOST; n++) {
+      const i = (sent + n) % length;
+      const { t, channel, text } = this.messages[i];
+      if (text.toLowerCase().includes(word)) found.push({ kind: "message", text: `${channel} ${text}`, more: `${t.toFixed(2)} s`, go: () => this.choose(i) });
+    }
+    return found;
   }
 
   /**

@@ -2,6 +2,7 @@
 /** The bar below the net: back and on, steps, automatic play, runs. */
 
 import { el } from "./dom.js";
+import { howFar } from "./howfar.js";
 import { number, wrong } from "./parts.js";
 
 /** @typedef {import("./link.js").Link} Link */
@@ -144,7 +145,8 @@ export class PlayBar {
         told.replaceChildren(wrong({ message: "the time must be a number" }));
         return;
       }
-      this.setBusy(true);
+      // What ends a run sooner may do so at any step.
+      this.begin(wish.until === null && !condition.value.trim() && !this.actions.breakpoints.size ? wish.steps : 0);
       dialogue.close();
       const answer = await this.link.ask("run", { ...wish, breakpoints: [...this.actions.breakpoints] });
       this.setBusy(false);
@@ -179,6 +181,16 @@ export class PlayBar {
     if (text) this.actions.said(answer); // the bar may have no room for it
   }
 
+  /**
+   * A run begins.
+   * @param {number} total its steps; 0: nobody knows
+   */
+  begin(total) {
+    this.setBusy(true);
+    this.total = total;
+    this.howFar = howFar();
+  }
+
   /** @param {boolean} on */
   setBusy(on) {
     this.isBusy = on;
@@ -190,6 +202,8 @@ export class PlayBar {
 
   /** @param {any} said how far a run is */
   progress(said) {
-    if (this.isBusy) this.busy.textContent = `${said.progress.toLocaleString("en")} …${this.position.net.timed ? ` time ${said.time}` : ""}`;
+    if (!this.isBusy || !this.howFar) return;
+    const time = this.position.net.timed ? `time ${said.time}, ` : "";
+    this.busy.textContent = this.busy.title = `${time}${this.howFar(said.progress, this.total)}`;
   }
 }

@@ -54,7 +54,7 @@ export class ReplayPage {
     });
     this.divider = new Divider(/** @type {HTMLElement} */ (byId("timeline").parentElement), byId("transport"), byId("panels"), () => this.arranged());
     this.panels(actions);
-    this.search = new Search(byId("search"), this.clock, actions);
+    this.search = new Search(byId("search"), this.clock, { ...actions, messages: (word) => this.messages?.find(word) ?? [] });
     this.transport = new Transport(byId("transport"), this.clock, {
       message: (by) => this.toMessage(by), mark: (by) => this.toMark(by),
       moment: (text) => this.written.read(text),
@@ -209,6 +209,7 @@ export class ReplayPage {
     }
     this.net.show(this.run.net.transitions[t].instance);
     this.net.mark(t, -1);
+    this.code?.select(t);
     this.update();
   }
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** Finding a transition, a place, or a value that occurs in the run. */
+/** Finding a transition, a place, a value that occurs in the run, or a message. */
 
 import { el, shorten } from "./dom.js";
 
@@ -12,7 +12,7 @@ export class Search {
   /**
    * @param {HTMLElement} host
    * @param {Clock} clock
-   * @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions
+   * @param {{onTransition: (t: number) => void, onPlace: (p: number) => void, messages?: (word: string) => Found[]}} actions
    */
   constructor(host, clock, actions) {
     this.clock = clock;
@@ -110,7 +110,7 @@ export class Search {
     /** @type {Set<number>} */
     const texts = new Set();
     all.forEach((/** @type {string} */ text, /** @type {number} */ i) => text.toLowerCase().includes(word) && texts.add(i));
-    return [...found.slice(0, MOST), ...this.held(texts), ...this.bound(texts)];
+    return [...found.slice(0, MOST), ...this.held(texts), ...this.bound(texts), ...(this.actions.messages?.(word) ?? [])];
   }
 
   /**

@@ -30,7 +30,7 @@ export class Sides {
   update(update, pages, steps) {
     this.rows.replaceChildren(...update.sides.map((/** @type {any} */ side) => this.side(side, update.t)));
     const { punctuality: p, counts, messages, left_out: leftOut } = update.now;
-    const ms = (/** @type {number | null} */ s) => (s === null ? "none yet" : `${(1000 * s).toFixed(1)} ms`);
+    const ms = (/** @type {number | null} */ s) => (s === null ? "none yet" : s < 1 ? `${(1000 * s).toFixed(1)} ms` : `${s.toFixed(2)} s`);
     const rows = [
       ["time", `${update.t.toFixed(2)} s`],
       ["last answer of the supervisor", ms(p.answer)], ["longest answer", ms(p.longest)],
@@ -48,7 +48,7 @@ export class Sides {
    * @param {number} now
    */
   side(side, now) {
-    const since = side.since === null ? "" : `since ${Math.max(now - side.since, 0).toFixed(1)} s`;
+    const since = side.since === null ? "" : `for ${Math.max(now - side.since, 0).toFixed(1)} s`;
     const line = side.line ? `line ${side.line}` : "";
     return el("tr", {}, el("th", { scope: "row", text: side.name }), el("td", { class: "state", text: side.state }),
       el("td", { text: side.text }), el("td", { text: [line, since].filter((x) => x).join(", ") }));

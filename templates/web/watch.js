@@ -1,7 +1,8 @@
 // @ts-check
-/** Watched places: how many tokens each has held over the time, and what it holds now. */
+/** Watched places: what each has held over the time, and what it holds now. */
 
-import { colour, el, shorten, sketch } from "./dom.js";
+import { el, shorten } from "./dom.js";
+import { drawStrip } from "./strip.js";
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -14,7 +15,7 @@ export class Watch {
   constructor(host, clock, onPlace) {
     this.clock = clock;
     this.onPlace = onPlace;
-    /** @type {Map<number, {history: any[], canvas: HTMLCanvasElement, text: HTMLElement, root: HTMLElement, version: number}>} */
+    /** @type {Map<number, {history: any[], canvas: HTMLCanvasElement, cursor: HTMLElement, text: HTMLElement, root: HTMLElement, version: number, drawn: string}>} */
     this.places = new Map();
     const net = clock.course.net;
     this.choice = el(
@@ -38,6 +39,7 @@ export class Watch {
     const { course } = this.clock;
     if (this.places.has(place) || !course.net.places[place]) return;
     const canvas = el("canvas", { "aria-hidden": "true" });
+    const cursor = el("span", { class: "cursor", "aria-hidden": "true" });
     const name = course.net.places[place].name;
     const text = el("pre", { tabindex: "0", role: "group", "aria-label": `Tokens of ${name}` });
     const root = el(
@@ -45,9 +47,9 @@ export class Watch {
       el("header", {},
         el("button", { class: "name", text: name, title: "Show it in the net", onclick: () => this.onPlace(place) }),
         el("button", { text: "×", title: `Watch ${name} no more`, "aria-label": `Watch ${name} no more`, onclick: () => this.remove(place) })),
-      canvas, text);
+      el("div", { class: "held" }, canvas, cursor), text);
     canvas.onclick = (/** @type {MouseEvent} */ e) => this.clock.seek((e.offsetX / canvas.clientWidth) * this.clock.end);
-    this.places.set(place, { history: course.history(place), canvas, text, root, version: -1 });
+    this.places.set(place, { history: course.history(place), canvas, cursor, text, root, version: -1, drawn: "" });
     this.rows.append(root);
     this.empty.hidden = true;
     this.update();
@@ -74,30 +76,12 @@ export class Watch {
         row.version = course.version[place];
         row.text.textContent = shorten(course.text(place), 600);
       }
-      this.draw(row);
+      row.cursor.style.left = `${(this.clock.t / this.clock.end) * 100}%`;
+      const { clientWidth, clientHeight } = row.canvas;
+      const drawn = [clientWidth, clientHeight, devicePixelRatio, this.clock.end, document.documentElement.dataset.theme, row.history.length].join(" ");
+      if (row.drawn === drawn) continue; // most of the time only the cursor moves
+      row.drawn = drawn;
+      drawStrip(row.canvas, row.history, course, this.clock.end);
     }
-  }
-
-  /** @param {{history: any[], canvas: HTMLCanvasElement}} row */
-  draw({ history, canvas }) {
-    const [c, w, h] = sketch(canvas);
-    const most = history.reduce((n, r) => Math.max(n, r.count), 1);
-    const x = (/** @type {number} */ k) => ((k ? this.clock.course.time[k - 1] : 0) / this.clock.end) * w;
-    const y = (/** @type {number} */ n) => h - 3 - (n / most) * (h - 6);
-    c.strokeStyle = colour("token");
-    c.fillStyle = colour("tokenfill");
-    c.lineWidth = 1.5;
-    c.beginPath();
-    c.moveTo(0, y(0));
-    history.forEach((r, i) => {
-      c.lineTo(x(r.step), y(i ? history[i - 1].count : r.count));
-      c.lineTo(x(r.step), y(r.count));
-    });
-    c.lineTo(w, y(history[history.length - 1].count));
-    c.stroke();
-    c.lineTo(w, y(0));
-    c.fill();
-    c.fillStyle = colour("accent");
-    c.fillRect((this.clock.t / this.clock.end) * w - 1, 0, 2, h);
   }
 }

@@ -111,5 +111,5 @@ def test_the_same_is_found(
     monkeypatch.setattr(control, "explore", noted)
     at_once = looked()
     assert stems == explored
-    monkeypatch.setattr(control, "_parted", lambda rows, last: (rows[: len(rows) - last], ()))
+    monkeypatch.setattr(control, "parted", lambda rows, last: (rows[: len(rows) - last], ()))
     assert looked() == at_once and stems == [*explored, "cell", "orders"]

@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 from helpers import belt_cell
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 

@@ -20,7 +20,8 @@ from pn2code.pipeline import generate
 from pn2code.robot import scene
 from pn2code.robot.commands import MoveLinear
 from pn2code.robot.transforms import Array
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build", "here")]
 

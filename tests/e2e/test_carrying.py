@@ -19,7 +19,9 @@ from pn2code.conform.cell import ProgramComparison
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
 from pn2code.robot.model import MODELS
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.verdict.opened import read
 from pn2code.verdict.programs import partition_of
 

@@ -29,7 +29,8 @@ from pn2code.geometry.legs import Planner
 from pn2code.geometry.shown import Shown
 from pn2code.robot import scene
 from pn2code.robot.bullet import BulletBackend
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits
 

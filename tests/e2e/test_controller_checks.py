@@ -30,9 +30,10 @@ from pn2code.emission.write import write
 from pn2code.net import front
 from pn2code.toolchain import build
 from pn2code.verify.controller import control, control_types, proofs
-from pn2code.verify.controller.control import ownership
 from pn2code.verify.controller.control_answers import has_own_priorities
 from pn2code.verify.controller.control_types import Check, Plan
+from pn2code.verify.controller.not_looked import not_looked
+from pn2code.verify.controller.ownership import ownership
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
@@ -619,7 +620,7 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
     folder = explorers.build(net, wide(Sizes.start(net, {}), 4), "no_graph")
     for phase, answer in (("graph", "yes"), ("explore", "unknown")):
         found = Exploration.of(net, explorers.said(folder, "--ends-in", phase).report, 0.0)
-        looked = control.not_looked("seconds", partition, None, found)
+        looked = not_looked("seconds", partition, None, found)
         said = {c.name: c.answer for c in looked.checks}
         assert said == {
             **dict.fromkeys(said, "unknown"),

@@ -17,7 +17,9 @@ from pn2code.geometry.reach_look import Wanted
 from pn2code.geometry.reach_look import look as reach
 from pn2code.geometry.report import text
 from pn2code.pipeline import generate
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.timing.doings import NS, Doings
 from pn2code.verdict.opened import read
 from pn2code.verify.exploring.limits import Limits

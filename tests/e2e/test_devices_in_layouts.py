@@ -16,7 +16,8 @@ from pn2code.geometry.check import cells_of
 from pn2code.robot.geometry import bodies
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 AWAY = """
 [layouts.here]

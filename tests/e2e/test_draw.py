@@ -13,6 +13,7 @@ import pytest
 from lxml import etree
 
 from helpers import netbuilder
+from pn2code.base.progress_line import Line
 from pn2code.cli import main
 from pn2code.drawing import raster
 
@@ -222,8 +223,12 @@ def test_each_text_is_once_in_a_pdf(net: Path, tmp_path: Path) -> None:
     assert Counter("".join(top.extract_text().split())) == letters
 
 
-def test_pdf(net: Path, tmp_path: Path) -> None:
+def test_pdf(net: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+    say = Line.say
+    monkeypatch.setattr(Line, "say", lambda line, text: (said.append(text), say(line, text)))
     assert draw(net, "-o", tmp_path / "net.pdf", "--marking") == 0
+    assert "making a PDF of 2 pages ..." in said, "of a large page it takes half a minute"
     top, sub = pypdf.PdfReader(tmp_path / "net.pdf").pages
     assert "Left" in top.extract_text() and "1`7" in top.extract_text()
     assert "Eat" in sub.extract_text() and "[n > 5]" in sub.extract_text()

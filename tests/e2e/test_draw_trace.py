@@ -10,6 +10,7 @@ import pytest
 from lxml import etree
 
 from helpers import netbuilder
+from pn2code.base.progress_line import Line
 from pn2code.cli import main
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -128,8 +129,13 @@ def test_pictures_of_a_state_space(
     net: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    graph, plot = tmp_path / "graph.html", tmp_path / "plot.svg"
+    graph, plot, told = tmp_path / "graph.html", tmp_path / "plot.svg", []
+    turn_to = Line.turn_to
+    monkeypatch.setattr(
+        Line, "turn_to", lambda line, text: (told.append(text), turn_to(line, text))
+    )
     assert run("verify", net, "-q", "--draw", graph, "--plot", plot) == 0
+    assert "drawing the pictures" in told, "thousands of nodes take seconds"
     html = graph.read_text(encoding="utf-8")
     assert html.count('class="node') == 6 and len(re.findall(r'<tr id="arc-', html)) == 7
     assert etree.parse(plot).getroot().tag == f"{SVG}svg"

@@ -8,7 +8,8 @@ import pytest
 
 from helpers.small_cell import write
 from pn2code.diagnostics import Diagnostics
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 NET = """
 net cell

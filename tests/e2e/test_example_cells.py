@@ -28,7 +28,8 @@ from pn2code.diagnostics import Diagnostics, render
 from pn2code.net.front import load
 from pn2code.pipeline import Generated, generate
 from pn2code.report.summary import page
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.trace.replay import replay
 
 pytest.importorskip("jinja2")

@@ -9,7 +9,8 @@ import pytest
 from helpers.solvers import solver_for
 from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 CELLS = (
     "minimal",

@@ -92,6 +92,15 @@ def test_nodes_are_found_by_their_marking(page: Any) -> None:
     assert page.locator("#results li").text_content() == "0 nodes"
 
 
+def test_it_is_dark_where_the_page_is(page: Any) -> None:
+    corner = page.locator(".sheet").bounding_box()
+    clip = {"x": corner["x"] + 4, "y": corner["y"] + 4, "width": 2, "height": 2}
+    light = page.screenshot(clip=clip)
+    page.emulate_media(color_scheme="dark")
+    assert page.screenshot(clip=clip) != light
+    assert "invert" in page.eval_on_selector(".legend svg", "e => getComputedStyle(e).filter")
+
+
 def test_zooming_and_moving(page: Any) -> None:
     page.locator("#tools button[value='0']").click()
     before, whole = middle(page), view(page)

@@ -25,8 +25,8 @@ from pn2code import pipeline
 from pn2code.channels import PeerState, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
-from pn2code.run.cell import _scripts
 from pn2code.run.files import RobotFiles
+from pn2code.run.prepare import scripts_of
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.requests import AwaitFile, Event, Fault, Finished, Marked, MessageRead
@@ -79,7 +79,7 @@ def test_what_is_read_is_whole_and_fresh(host: str, tmp_path: Path) -> None:
     d = Diagnostics()
     generated = pipeline.generate(cell, d, checked=False)
     assert generated is not None and generated.config is not None, [str(i) for i in d]
-    scripts = _scripts(generated, generated.config, d)
+    scripts = scripts_of(generated, generated.config, d)
     assert scripts is not None
     write(tmp_path / "program", generated.files)
     program = build.build(tmp_path / "program", generated.files, d, target=host)

@@ -10,7 +10,8 @@ from lxml import etree
 from helpers.processes import pn2code
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.net.front import load
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 DECORATION = ("posattr", "fillattr", "lineattr", "textattr", "ellipse", "box", "generator")
 

@@ -10,7 +10,9 @@ import pytest
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.usefixtures("quick_build", "generated_once")

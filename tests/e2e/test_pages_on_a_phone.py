@@ -30,4 +30,7 @@ def test_a_drawing_and_a_report(tmp_path: Path) -> None:
                 main = browser.page.locator("main").bounding_box()
                 assert main["x"] < 30 and main["width"] > 340
                 assert complaints(browser) == []
+                browser.page.emulate_media(color_scheme="dark")
+                filters = "() => [...document.querySelectorAll('main svg')].map((e) => getComputedStyle(e).filter)"
+                assert all("invert" in each for each in browser.ask(filters)), "white in the dark"
                 assert browser.errors == []

@@ -102,7 +102,7 @@ def asked(net: Path, folder: Path, *options: object) -> dict[str, Any]:
 def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     folder = tmp_path_factory.mktemp("part")
     net = write(NET, folder / "part.cpn")
-    return asked(net, folder, "--max-states", "30000", "--threads", "1")
+    return asked(net, folder, "--max-states", "30000", "--threads", "1", "--no-unfold")
 
 
 @pytest.mark.parametrize("name", NO)
@@ -169,7 +169,16 @@ def test_what_leads_out_of_a_part_is_not_dead(
     tmp_path: Path, states: int, text: str, answer: str
 ) -> None:
     net = write(ENDLESS, tmp_path / "endless.cpn")
-    options = ("--max-states", states, "--threads", "1", "--traces", tmp_path, "--json")
+    options = (
+        "--max-states",
+        states,
+        "--threads",
+        "1",
+        "--no-unfold",
+        "--traces",
+        tmp_path,
+        "--json",
+    )
     done = pn2code("verify", net, "--property", text, *options)
     (found,) = json.loads(done.stdout)["properties"]
     assert found["answer"] == answer

@@ -13,7 +13,8 @@ from helpers.meeting_cell import NET, TOML, meeting_cell
 from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
 

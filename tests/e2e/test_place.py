@@ -89,7 +89,7 @@ def test_a_plan_is_walked_as_it_was_planned() -> None:
     cell = riveting_cell("paper")
     planner = planned(cell)
     plan = Plan.of(planner.legs, "robot2")
-    assert [before for before, _ in plan.steps] == [
+    assert [step.after for step in plan.steps] == [
         -1,
         0,
         1,

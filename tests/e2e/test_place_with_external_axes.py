@@ -23,7 +23,7 @@ from pn2code.geometry.activities import Doing
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.placing.free import Free, moved, parse
 from pn2code.geometry.placing.judging import Judge
-from pn2code.geometry.placing.plan import Plan
+from pn2code.geometry.placing.plan import Plan, Step
 from pn2code.geometry.placing.search import Search, Wish
 from pn2code.geometry.reach_map import Task
 from pn2code.robot.carried import WithAxes
@@ -142,7 +142,8 @@ def test_an_arm_that_is_told_no_pose_reaches_all_from_everywhere() -> None:
     cell = loaded()
     free = parse(["right.base.y"], cell, 0.1)
     task = Task(np.zeros((0, 4, 4)), ())
-    plan = Plan(((-1, MoveHome()), (0, MoveExternal(along=(Along("bench", 0.2, is_track=True),)))))
+    along = MoveExternal(along=(Along("bench", 0.2, is_track=True),))
+    plan = Plan((Step(-1, MoveHome()), Step(0, along)))
     judge = Judge(cell, {"right": task}, {"right": plan}, free)
     try:
         found = Search(judge, Wish(clearance=0.005), generations=1).run()

@@ -185,6 +185,17 @@ class TestPlaying:
         at(browser, 1)
         assert dict(browser.ask("() => play.marking()"))["Table.Waits"] == "2`ph(1)"
 
+    def test_a_marking_can_be_typed_as_it_stands_to_be_changed(self, browser: Page) -> None:
+        """`{x=~1.5}` as it is shown is no CPN ML: `=~` is one operator."""
+        field = browser.ask("""() => {
+            const { marking, position } = play.page, held = position.markings[0];
+            position.markings[0] = '1`{x=~1.5,s="a=~b\\nc"}';
+            marking.choose(0);
+            position.markings[0] = held;
+            return marking.change.input.value;
+        }""")
+        assert field == '1`{x= ~1.5,s="a=~b\\nc"}'
+
     def test_expressions_are_evaluated(self, browser: Page) -> None:
         browser.page.get_by_role("tab", name="Evaluate").click()
         field = browser.page.get_by_label("Expression in CPN ML")
@@ -313,6 +324,32 @@ class TestPlaying:
         assert where.get_attribute("aria-live") == "off"
         browser.page.keyboard.press("p")
         assert where.get_attribute("aria-live") == "polite"
+
+    def test_how_far_a_run_is_has_a_rate_and_an_estimate(self, browser: Page) -> None:
+        said = browser.ask("""() => {
+            const { bar } = play.page, own = performance.now, said = [];
+            let t = 0;
+            performance.now = () => t;
+            for (const [total, ...moments] of [[1000, [100, 90], [2000, 500], [4000, 1000]], [0, [2000, 5000]]]) {
+                t = 0;
+                bar.begin(total);
+                for (const [now, steps] of moments) {
+                    t = now;
+                    bar.progress({ progress: steps });
+                    said.push(bar.busy.textContent);
+                }
+            }
+            performance.now = own;
+            bar.setBusy(false);
+            bar.busy.textContent = "";
+            return said;
+        }""")
+        assert said == [
+            "90 …",
+            "500, 250 a second, about 2 s left",
+            "1,000 …, reading what has occurred",
+            "5,000, 2,500 a second",
+        ]
 
     def test_a_run_that_cannot_begin_is_over(self, browser: Page) -> None:
         """Not *running …* for ever."""

@@ -93,9 +93,10 @@ def test_a_timed_net(tmp_path: Path) -> None:
 
 def test_limits_leave_answers_open(root: Path) -> None:
     net = pn2code.load(root / "examples" / "philosophers" / "philosophers.cpn", values={"n": 6})
-    found = net.verify(max_states=10)
+    found = net.verify("deadlock free", max_states=10, unfold=False)
     assert not found.is_complete
     assert found.verdict == "inconclusive"
+    assert net.verify("deadlock free", max_states=10).verdict == "no"
 
 
 def test_what_is_wrong_is_raised(tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from pn2code.cell.divide import divide
 from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.verify.controller.poses import Poses
 from pn2code.verify.exploring import result
 from pn2code.verify.exploring.explore import explore

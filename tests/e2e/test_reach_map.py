@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from helpers.meeting_cell import meeting_cell
 from helpers.robot_cells import pose_mm, riveting_cell
+from pn2code.base.how_far import listening
 from pn2code.cli.main import app
 from pn2code.geometry.reach_map import Task, reach_map
 from pn2code.robot.commands import MoveJoint
@@ -23,7 +24,9 @@ from pn2code.robot.transforms import matrix_of
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 
-def test_poses_are_reached_where_an_executor_reaches_them() -> None:
+def test_poses_are_reached_where_an_executor_reaches_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     cell = riveting_cell("paper")
     robot = cell.robot("robot2")
     choice = Random(4)
@@ -33,7 +36,12 @@ def test_poses_are_reached_where_an_executor_reaches_them() -> None:
     ]
     task = Task(np.stack([matrix_of(p) for p in poses]), tuple(slice(i, i + 1) for i in range(12)))
     bases = np.array([[choice.uniform(5, 7.5), choice.uniform(7.5, 9.2)] for _ in range(40)])
-    found = reach_map(robot, task, bases)
+    said: list[str] = []
+    monkeypatch.setattr("pn2code.geometry.reach_map._AT_ONCE", 1)
+    monkeypatch.setattr("pn2code.base.how_far.PERIOD_S", 0.0)
+    with listening(said.append):
+        found = reach_map(robot, task, bases)
+    assert said[-1].startswith("moving robot2: 40 of 40, ") and "about 0 s left" in said[-1]
     some = set()
     for i, (x, y) in enumerate(bases):
         there = replace(robot, base=replace(robot.base, x=x, y=y))

@@ -24,8 +24,10 @@ from pn2code.replay.arrays import packed, packed_bytes, packed_reals
 from pn2code.replay.motion import Motion
 from pn2code.replay.page import page
 from pn2code.robot.transforms import Array
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.engine import Engine
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game
@@ -163,6 +165,57 @@ class TestRivetingCell:
         )
         top = browser.ask("() => document.querySelector('.mark.moves').style.top")
         assert round(float(top.removesuffix("px")) / 17) + 1 == action.line
+
+    def test_lines_of_what_is_chosen_are_seen(self, browser: Page, shown: Shown) -> None:
+        """Of a bar whose command another step has begun; and of a transition that never occurs."""
+        record = shown.result.record
+        action = next(a for a in record.actions if a.kind == "tool")
+        browser.page.get_by_role("tab", name="Code").click()
+        follow = browser.page.locator("#panel-code").get_by_role("button", name="Follow")
+        if follow.get_attribute("aria-pressed") == "false":
+            follow.click()
+        seen = """() => {
+          const { code, run } = replay.page, view = code.view.getBoundingClientRect();
+          const top = (m) => m.getBoundingClientRect().top;
+          const inside = (m) => top(m) >= view.top - 1 && top(m) < view.bottom;
+          return [run.programs.files[code.shown].name, [...document.querySelectorAll('.mark.chosen')].some(inside)];
+        }"""
+        select = """([name, jump]) => {
+          const { page } = replay, i = page.course.net.transitions.findIndex((t) => t.name === name);
+          page.selectTransition(i, jump);
+        }"""
+        browser.ask("t => replay.seek(t)", (action.start + action.end) / 2)
+        browser.ask(select, [action.transition, False])
+        assert browser.ask(seen) == [f"{action.robot}.tdl", True]
+        occurred = {e["transition"] for e in record.events if "transition" in e}
+        programs = shown.result.prepared.generated.files
+        never = next(
+            b.element
+            for f in programs
+            for b in f.blocks
+            if f.path == "net.c" and b.kind == "transition" and b.element not in occurred
+        )
+        browser.ask(select, [never, True])
+        assert browser.ask(seen) == ["net.c", True]
+        browser.ask("() => replay.seek(0)")
+        assert browser.page.locator(".mark.chosen").count() == 0
+
+    def test_a_watched_place_shows_its_values(self, browser: Page) -> None:
+        """Numbers are a curve, and values are written where they have room; the number of tokens alone said nothing."""
+        browser.page.get_by_role("tab", name="Watch").click()
+        written = browser.ask("""() => {
+          const { page } = replay, { prototype } = CanvasRenderingContext2D, own = prototype.fillText, said = [];
+          const i = page.course.net.places.findIndex((p) => p.name === "Cell.Robot1.Commanded");
+          prototype.fillText = function (text, ...how) { said.push(text); return own.call(this, text, ...how); };
+          page.watch.add(i);
+          prototype.fillText = own;
+          const { history } = page.watch.places.get(i);
+          const { texts, tokens } = page.course;
+          const values = history.map(({ count, only }) => (count ? texts[tokens.text[only]] : ""));
+          page.watch.remove(i);
+          return [said, values];
+        }""")
+        assert set(written[0]) & {"2", "5"} and set(written[1]) >= {"", "1", "2", "5"}
 
     def test_a_line_of_code_leads_to_its_transition(self, browser: Page, shown: Shown) -> None:
         block = next(
@@ -343,6 +396,13 @@ class TestRivetingCell:
             ("moveLinear", "transition"),
             ("dadosrobo1", "place"),
             ("5802.2", "value"),
+            # A message has other digits than the value of the net.
+            (
+                browser.ask(
+                    "() => replay.page.messages.messages.find((m) => m.text.includes('.')).text"
+                ),
+                "message",
+            ),
         ):
             field.fill(word)
             assert browser.page.locator(f"#found .kind.{kind}").count() >= 1
@@ -558,6 +618,8 @@ def test_how_it_ended_leaves_room_to_search_on_a_phone(tmp_path: Path, chromium:
         )
         assert chip["height"] < 30 and search["width"] >= 60
         assert browser.ask("() => document.documentElement.scrollWidth") <= 390
+        cut = "() => { const e = document.getElementById('verdict'); return e.scrollWidth - e.clientWidth; }"
+        assert browser.ask(cut) <= 0 and chip["width"] < 375
 
 
 @pytest.mark.parametrize("options", [{}, PHONE], ids=["desk", "phone"])

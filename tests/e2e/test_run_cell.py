@@ -21,8 +21,10 @@ from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.robot.transforms import Array
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.engine import Engine
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.usefixtures("quick_build", "generated_once")

@@ -23,16 +23,18 @@ from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.division import divided
 from pn2code.run import engine
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.verdict.asked import gather
 from pn2code.verdict.controller import look
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.properties import answered
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.replies import Replies
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 

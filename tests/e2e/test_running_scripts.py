@@ -19,6 +19,7 @@ from pn2code.run import engine
 from pn2code.verify.controller import control, moments
 from pn2code.verify.controller.commands import MANY, Commands
 from pn2code.verify.controller.control_types import Plan
+from pn2code.verify.controller.not_looked import not_looked
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Exploration
@@ -426,7 +427,7 @@ def test_all_messages_are_looked_at_however_few_are_listed(tmp_path: Path) -> No
     assert found is not None
     (messages,) = [c for c in found.checks if c.name == "messages"]
     assert messages.answer == "no" and "it has 5,002 bytes" in messages.says
-    closed = control.not_looked("a test", partition, closed=_cut(found.found))
+    closed = not_looked("a test", partition, closed=_cut(found.found))
     assert {c.name: c.answer for c in closed.checks}["messages"] == "unknown"
 
 

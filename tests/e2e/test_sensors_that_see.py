@@ -11,7 +11,8 @@ from helpers.looking_cell import ELSEWHERE, LOOKING, SENSOR, changed
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load
 from pn2code.diagnostics import Diagnostics
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.run.sensors import load as load_sensors
 from pn2code.verdict.opened import read
 

@@ -14,7 +14,8 @@ from helpers.many_robots import many_robots
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.report.summary import page
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 

@@ -13,7 +13,8 @@ from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 

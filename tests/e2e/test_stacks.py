@@ -15,7 +15,9 @@ from pn2code.net.source import read as read_net
 from pn2code.replay import run as runs
 from pn2code.replay.motion import Motion
 from pn2code.robot.backend import BackendName
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits
 

@@ -25,13 +25,15 @@ _SEEN = """() => {
 
 _NOTING = """
   window.labels = [];
+  window.places = [];
   const own = CanvasRenderingContext2D.prototype.fillText;
   CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {
     labels.push(text);
+    if (this.textAlign === "left") places.push([text, ...rest, this.measureText(text).width]);
     return own.call(this, text, ...rest);
   };
 """
-"""Keeps what is written on canvases."""
+"""Keeps what is written on canvases, and where."""
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +82,26 @@ def test_all_of_three_arms_is_seen_at_once(tmp_path: Path, chromium: Any) -> Non
         browser.open(of_arms(tmp_path, 3))
         found = seen(browser)
         assert found["lowest"] >= 0 and not found["below"]
+
+
+@pytest.mark.parametrize("arms", [2, 3])
+def test_names_of_curves_keep_off_each_other(arms: int, tmp_path: Path, chromium: Any) -> None:
+    """At 1280 x 720; a line of letters needs 13 pixels, and of two arms the lines were eleven apart."""
+    with opened(chromium) as browser:
+        browser.page.add_init_script(_NOTING)
+        browser.open(of_arms(tmp_path, arms))
+        browser.settled()
+        browser.ask(
+            "() => { places.length = 0; const { timeline } = replay.page; timeline.drawn = ''; timeline.paint(); }"
+        )
+        browser.wait("places.length > 0")
+        left = browser.ask("() => replay.page.timeline.left")
+        names = [place for place in browser.ask("() => places") if place[1] < left]
+        assert {"robots", "conditioning", f"robot{arms}"} <= {text for text, *_ in names}
+        for text, x, y, width in names:
+            for other, x2, y2, width2 in names:
+                if (text, x, y) != (other, x2, y2) and x < x2 + width2 and x2 < x + width:
+                    assert abs(y - y2) >= 13, (text, other)
 
 
 def test_rows_fold_by_keys_and_the_address_keeps_it(tmp_path: Path, chromium: Any) -> None:

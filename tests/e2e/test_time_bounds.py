@@ -19,7 +19,8 @@ from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.timing.doings import NS
 from pn2code.trace.replay import replay
 

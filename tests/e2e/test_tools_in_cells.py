@@ -15,7 +15,9 @@ from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
-from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
+from pn2code.run.results import RunResult
 from unit.cell.test_cookbook import RECIPES
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]

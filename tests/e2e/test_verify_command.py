@@ -78,13 +78,15 @@ def test_truncated(net: Path, tmp_path: Path) -> None:
         ("--max-seconds", "2", "seconds"),  # with what comes before the exploration
         ("--memory", "16", "memory"),
     ):
-        done = pn2code("verify", net, option, value, "--json", "--most-traces", "0")
+        alone = ("--no-unfold", "--json", "--most-traces", "0")
+        done = pn2code("verify", net, option, value, *alone)
         said = json.loads(done.stdout)
         assert (done.returncode, said["complete"], said["why"]) == (3, False, why), option
         assert said["nodes"] >= 100 or why == "seconds"
         assert said["home_markings"] is None
         assert said["live_transitions"] is None
-    done = pn2code("verify", net, "--max-states", "100", "--quiet", "--report", tmp_path / "r")
+    options = ("--max-states", "100", "--no-unfold", "--quiet")
+    done = pn2code("verify", net, *options, "--report", tmp_path / "r")
     assert done.returncode == 3
     text = (tmp_path / "r").read_text()
     assert "PARTIAL: the limit of states was reached" in text

@@ -102,7 +102,7 @@ def test_of_the_command_line_alone(net: Path, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("here")
 def test_not_known(net: Path, tmp_path: Path) -> None:
-    options = ["--no-found", "--max-states", "6", "--traces", tmp_path]
+    options = ["--no-found", "--no-unfold", "--max-states", "6", "--traces", tmp_path]
     code, said, _ = asked(
         net, *options, "--property", "ctl AG EF initial", "--property", "always true"
     )

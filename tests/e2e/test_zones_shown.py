@@ -29,7 +29,8 @@ from pn2code.robot.backend import Camera
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
+from pn2code.run.prepare import RunOptions
 from pn2code.run.record import BrokenZone
 
 FRONT = """

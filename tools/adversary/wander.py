@@ -23,10 +23,12 @@ from pn2code.robot.commands import Command, Wait
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.trajectories import Still
-from pn2code.run.cell import _scripts, shared_directory
+from pn2code.run.cell import shared_directory
 from pn2code.run.device import DeviceExecutor
+from pn2code.run.doings import stuck
 from pn2code.run.engine import Engine
 from pn2code.run.files import RobotFiles
+from pn2code.run.prepare import scripts_of
 from pn2code.run.record import RunRecord
 from pn2code.run.runner import CellStoppedError, RobotRunner
 from pn2code.run.sensors import load as load_sensors
@@ -77,7 +79,7 @@ def prepare(folder: Path, d: Diagnostics, *, checked: bool = False) -> Built | N
         return None
     config = generated.config
     robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
-    scripts = _scripts(generated, config, d)
+    scripts = scripts_of(generated, config, d)
     if robot_cell is None or scripts is None:
         return None
     out = folder / "program"
@@ -187,7 +189,7 @@ class _Wanderer(Engine):
         if wake is not None and not self._finished and not self._is_held(SUPERVISOR):
             times.append(wake)
         if not times:
-            raise CellStoppedError(self._stuck())
+            raise CellStoppedError(stuck(self.robots, self.now))
         return max(self.now, min(times))
 
 

@@ -27,8 +27,9 @@ from urllib.parse import urlsplit
 from pn2code.diagnostics import Diagnostics
 from pn2code.live.view import LiveView
 from pn2code.robot.transforms import Array
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.engine import Engine
+from pn2code.run.prepare import RunOptions
 from pn2code.run.realtime import RealtimeEngine
 
 MOST = 1.05

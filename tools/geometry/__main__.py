@@ -24,6 +24,7 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -52,8 +53,9 @@ from pn2code.geometry.placing.look import Request, look
 from pn2code.geometry.placing.search import Wish
 from pn2code.geometry.report import text
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.cell import run_cell
 from pn2code.run.placed import run_placed
+from pn2code.run.prepare import RunOptions
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits, cores
 
@@ -230,16 +232,19 @@ def random_cells(
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
     wrong = 0
-    for number in range(seed, seed + step * count, step):
+    for done, number in enumerate(range(seed, seed + step * count, step), 1):
+        times = [processor()]
         net, toml = moving_cell(Random(number)) if moving else random_cell(number)
         cell = folder / str(number)
         cell.mkdir()
         (cell / "cell.cpn").write_bytes(cpn(net))
         (cell / "cell.toml").write_text(toml)
         found = looked(cell, folder / f"{number}.runs")
+        times.append(processor())
         met = ran(cell, folder / f"{number}.run") if is_run else ""
         arms = found.layouts[0][1]
         met = met or strolled(cell, arms, number, walks)
+        times.append(processor())
         key = (found.answer, "something" if met else "nothing")
         said[key] = said.get(key, 0) + 1
         if found.answer == "yes" and met:
@@ -259,14 +264,20 @@ def random_cells(
                 )
         elif number % 4 == 0 and not moving:
             robot = arms.robots[-1].name
-            answer, met = placed(cell, robot, folder / f"{number}.place", number, walks)
-            key = (f"{answer} to another place", "something" if met else "nothing")
+            answer, there = placed(cell, robot, folder / f"{number}.place", number, walks)
+            key = (f"{answer} to another place", "something" if there else "nothing")
             said[key] = said.get(key, 0) + 1
-            if met:
+            if there:
                 wrong += 1
-                print(f"cell {number}: {robot} was placed, but {met}", flush=True)
-    for (answer, happens), times in sorted(said.items()):
-        print(f"{times:4} cells: the answer is {answer}, in runs {happens} happens")
+                print(f"cell {number}: {robot} was placed, but {there}", flush=True)
+        took = [after - before for before, after in pairwise((*times, processor()))]
+        print(
+            f"cell {number} ({done} of {count}): {found.answer}, {met or 'nothing happens'}; processor, s: "
+            f"answer {took[0]:.1f}, runs {took[1]:.1f}, other answers {took[2]:.1f}; {wrong} wrong so far",
+            flush=True,
+        )
+    for (answer, happens), often in sorted(said.items()):
+        print(f"{often:4} cells: the answer is {answer}, in runs {happens} happens")
     return wrong
 
 

@@ -21,6 +21,8 @@ from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.clamps import closed_on, closing, holding, nearest, on_nothing, shut, taken_along
 from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import LedContact, LedContacts
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.part import PartFault
@@ -38,6 +40,7 @@ class _Arm:
         self.element = -1
         self.left: list[Command] = []
         self.part = 0.0
+        self._ends: tuple[Motion, MoveEnds] | None = None
 
     @property
     def kind(self) -> MotionKind | None:
@@ -49,6 +52,17 @@ class _Arm:
         if motion is None:
             return self.executor.q
         return np.asarray(motion.q(motion.began + self.part * motion.duration))
+
+    @property
+    def ends(self) -> MoveEnds:
+        """Of what it does now."""
+        motion = self.executor.motion
+        assert motion is not None
+        if self._ends is None or self._ends[0] is not motion:
+            robot, tool = self.executor.robot, self.executor.tool
+            made = MoveEnds.of(robot, tool, motion.trajectory, motion.kind)
+            self._ends = motion, made
+        return self._ends[1]
 
     def begin(self, parts: PartKeeper) -> None:
         self.part = 0.0
@@ -137,6 +151,15 @@ def _walk(
             parts.parts.stand(name, q)
         return joints
 
+    led = LedContacts(cell)
+
+    def leads_to(contact: LedContact) -> bool:
+        present = parts.parts.present
+        own = next(a for a in arms.values() if a.executor.robot.name == contact.robot)
+        touching = present.get(contact.part), present.get(contact.other)
+        joints = {a.executor.robot.name: a.joints() for a in arms.values()}
+        return led.is_led(contact, own.ends, touching, joints.__getitem__)
+
     eyes = Eyes(graph, cell)
     state = 0
     pace = {owner: choice.choice([0.02, 0.1, 0.4]) for owner in arms}
@@ -204,6 +227,7 @@ def _walk(
             kinds={a.executor.robot.name: a.kind for a in arms.values() if a.kind is not None},
             calm=[a.executor.robot.name for a in arms.values() if not a.turning()],
             turning=parts.parts.turning,
+            leads_to=leads_to,
         )
         if found.fault is not None:
             return found.fault.message

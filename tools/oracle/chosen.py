@@ -24,7 +24,7 @@ from helpers.random_nets import random_net
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, texts
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game, GameError
 

@@ -95,7 +95,11 @@ UNENTERED = Verdict(
     "engine", "its state space tool cannot be entered with a name or a fusion set of the net"
 )
 ORDER = Verdict("engine", "it asks conditions in another order, which was warned of")
+FIELDS = Verdict(
+    "engine", "it misses tokens of a record whose fields are in another order, which was warned of"
+)
 ORDER_WARNING = "guard-order"
+FIELDS_WARNING = "engine-field-order"
 SHARED_WARNING = "arcs-share-variables"
 SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
 ENTERING = "Exception raised entering state space tool"
@@ -108,8 +112,10 @@ BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
 """Where arcs from one place share variables: nothing is wrong with the net."""
-DECLARES = re.compile(r"InternalError: Illegal \S+Dec")
+DECLARES = re.compile(r"InternalError: Illegal \S+Dec|Uncaught Exception!: Compile")
 """Where an inscription declares something other than a value."""
+LISTS = "InternalError: fun parse_guarditems"
+"""Where a guard is a list that an operator makes."""
 REPEATS = "InternalError: fun get_vids"
 """Where one side of a guard equation has a variable twice."""
 
@@ -157,9 +163,10 @@ class Seen:
         if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             said = SHARED_WARNING in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
-        if wrong and all(e["message"].startswith(REPEATS) for e in wrong):
-            said = "guard-equation-repeats" in self.codes
-            return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
+        for message, code in ((REPEATS, "guard-equation-repeats"), (LISTS, "guard-list-operator")):
+            if wrong and all(e["message"].startswith(message) for e in wrong):
+                said = code in self.codes
+                return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(DECLARES.match(e["message"]) for e in wrong):
             said = "declaration-in-inscription" in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
@@ -276,17 +283,33 @@ class Seen:
         error = answer["stopped_by_error"] or ""
         if error and not followed.random and not self._raises(followed):
             return self._unraised(error)
+        if answer["stop"] == DEAD and not followed.random and self._goes_on(followed):
+            untold = FIELDS_WARNING not in self.codes
+            return differs("the engine sees nothing enabled in the end") if untold else FIELDS
         return Verdict("random") if followed.random else AGREES
+
+    def _goes_on(self, followed: Followed) -> bool:
+        """Whether after the steps of a run something is enabled here, now or later."""
+        game, settled = self._at_the_end(followed)
+        return bool(game.enabled_in(settled))
+
+    def _at_the_end(self, followed: Followed) -> tuple[Game, Marking]:
+        """The token game after the steps of a run.
+
+        Raises:
+            GameError: one of them raises an exception.
+        """
+        assert self.net is not None
+        game = Game(self.net, seed=1)
+        for time, element in followed.occurrences:
+            game.set_time(time)
+            game.fire(element)
+        return game, game.advance_time(game.marking)
 
     def _raises(self, followed: Followed) -> bool:
         """Whether after the steps of a run there is an exception here, too: in the search, or when something occurs."""
-        assert self.net is not None
         try:
-            game = Game(self.net, seed=1)
-            for time, element in followed.occurrences:
-                game.set_time(time)
-                game.fire(element)
-            settled = game.advance_time(game.marking)
+            game, settled = self._at_the_end(followed)
             for element in game.enabled_in(settled):
                 game.occur(settled, element)
         except GameError:
@@ -310,6 +333,8 @@ class Seen:
         found = self._space(answer)
         if found.state != "differs" or self.net is None:
             return found
+        if FIELDS_WARNING in self.codes:
+            return FIELDS
         changes = Effect.WRITE in Effects(self.net.program).of(*texts(self.net))
         return UNRESTORED if changes else found
 

@@ -23,6 +23,7 @@ _RULES: tuple[tuple[str, str, str, str], ...] = (
     ("value", "raised", r"\bpad(Left|Right)\b.*~10737", "an Overflow in padding to a number below zero"),
     ("raised", "*", r"\bIntInf\.(rem|quot|div|mod)\b", "the engine does not raise Div for 0 by 0"),
     ("value", "value", r"\bChar\.fromString\b", "a quotation mark is read as a character"),
+    ("value", "value", r"\bIntInf\.xorb\b", "xorb that is ~(2^30), ~(2^60), ... is 0 in the engine"),
     ("raised", "value", r"\bUT\.col\b", "positions below zero of a union"),
     ("raised", "raised", r"\binteger(De|En)code\b", "another exception of a function of Comms/CPN"),
     ("raised", "value", r"\bVector\.update\b", "an index beyond the end of a vector is not noticed"),

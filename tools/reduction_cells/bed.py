@@ -43,10 +43,11 @@ from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify.controller import by_turns, control
+from pn2code.verify.controller import by_turns, control, control_questions
 from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.controller.premises import Premises
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes
@@ -141,9 +142,9 @@ class _Space:
         self.cell, self.running = cell, running
         self.made = Generated()
         self.questions = (
-            control.of_cell(running, cell.plan, in_turns=True)
+            control_questions.of_cell(running, cell.plan, in_turns=True)
             if first
-            else control.of_orders(running, cell.plan.firings, in_turns=True)
+            else control_questions.of_orders(running, cell.plan.firings, in_turns=True)
         )
 
     def explored(self, table: Turns | None) -> Exploration | None:

@@ -141,7 +141,7 @@ class Limited:
         return explore(made.running.net, self.plan.storage, most, Diagnostics(), options)
 
     def _differences(self, found: Exploration, whole: Exploration) -> Iterator[str]:
-        """`whole`: of the same net, with the answers to `control.of_cell`."""
+        """`whole`: of the same net, with the answers to `control_questions.of_cell`."""
         if found.error is not None:
             yield "an exception"
             return
@@ -199,4 +199,4 @@ def _limited(held: list[list[Any]], limit: Limit | None) -> list[list[Any]]:
 
 
 _FIRST = 6
-"""Answers of `control.of_cell`: about the end, scripts that stop, and runs that go on for ever."""
+"""Answers of `control_questions.of_cell`: about the end, scripts that stop, and runs that go on for ever."""

@@ -22,7 +22,7 @@ from tools.adversary.judge import Said, ask, claims_text, contradictions
 from tools.register_cells.cells import random_cell
 
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.controller import running
+from pn2code.verify.controller import running_steps
 
 WAYS: tuple[tuple[str, ...], ...] = (
     ("--reduce", "partial-order"),
@@ -81,7 +81,7 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
 def without_passes() -> Iterator[None]:
     """The cell as it runs lets a script pass over a message of a register that has been there for long."""
     with pytest.MonkeyPatch.context() as changed:
-        changed.setattr(running._Composer, "_passed", lambda _: iter(()))
+        changed.setattr(running_steps.Steps, "_passed", lambda _: iter(()))
         yield
 
 

@@ -3,9 +3,10 @@
  *
  *     tables FILE METHOD SECONDS MIB SEED [PATIENCE]
  *
- * METHOD is walk, run (a walk that tells its steps), explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings). Diagrams
- * that are not whole after PATIENCE (in seconds, too) are given up; the others go on. The exit code is 0 when the
- * method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory ran out.
+ * METHOD is walk, explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings); or run,
+ * a walk, and way, a search, that tell the steps to what they find. Diagrams that are not whole after PATIENCE (in
+ * seconds, too) are given up; the others go on. The exit code is 0 when the method came to its end, 2 if the tables are
+ * wrong, 3 if a set was not whole in time, 4 if memory ran out.
  */
 #include "tables.h"
 
@@ -44,8 +45,8 @@ int main(int count, char **argument)
         tb_walk(&job, seed, seconds, strcmp(method, "run") == 0);
     } else if ((strcmp(method, "explore") == 0) || (strcmp(method, "count") == 0)) {
         tb_explore(&job, strcmp(method, "count") == 0);
-    } else if (strcmp(method, "reach") == 0) {
-        tb_reach(&job, seconds);
+    } else if ((strcmp(method, "reach") == 0) || (strcmp(method, "way") == 0)) {
+        tb_reach(&job, seconds, strcmp(method, "way") == 0);
     } else if (strcmp(method, "ctl") == 0) {
         tb_ctl(&job, seed, seconds);
     } else if (strcmp(method, "ltl") == 0) {

@@ -301,7 +301,7 @@ void tb_say_run(const tb_question_t *q, const uint32_t *step, uint32_t steps);
 
 void tb_walk(tb_job_t *job, uint64_t seed, double seconds, bool is_told);
 void tb_explore(tb_job_t *job, bool count);
-void tb_reach(tb_job_t *job, double each);
+void tb_reach(tb_job_t *job, double each, bool is_told);
 void tb_ctl(tb_job_t *job, uint64_t seed, double seconds);
 /* With seeds above 4 a run is hunted for first (tables_ltl_hunt.c). */
 void tb_ltl(tb_job_t *job, uint64_t seed, double seconds);

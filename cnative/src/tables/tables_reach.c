@@ -9,6 +9,14 @@
 
 #include <string.h>
 
+/* How a marking was reached first. */
+typedef struct step {
+    uint32_t from;
+    uint32_t by;
+} step_t;
+
+enum { FIRST_STEPS = 1 << 10 };
+
 typedef struct search {
     tb_question_t *question;
     tb_store_t store;
@@ -17,7 +25,38 @@ typedef struct search {
     tb_heap_t heap;
     tb_count_t *marking;
     uint32_t *fire;
+    step_t *step; /* of each marking, if runs are to be told; else NULL */
+    uint32_t room;
 } search_t;
+
+static void note_step(search_t *s, uint32_t number, uint32_t from, uint32_t by)
+{
+    if (s->step != NULL) {
+        if (number >= s->room) {
+            s->step = tb_grown(s->step, s->room, 2U * (size_t)s->room, sizeof *s->step);
+            s->room = 2U * s->room;
+        }
+        s->step[number] = (step_t){ from, by };
+    }
+}
+
+static void tell_run(const search_t *s, uint32_t number)
+{
+    if (s->step != NULL) {
+        uint32_t count = 0U;
+        for (uint32_t at = number; at > 0U; at = s->step[at].from) {
+            count++;
+        }
+        uint32_t *run = tb_new(count, sizeof *run);
+        uint32_t left = count;
+        for (uint32_t at = number; at > 0U; at = s->step[at].from) {
+            left--;
+            run[left] = s->step[at].by;
+        }
+        tb_say_run(s->question, run, count);
+        tb_free(run, count, sizeof *run);
+    }
+}
 
 /* Whether the question is answered by the marking at the cursor, which is entered. */
 static bool found(search_t *s, uint32_t number)
@@ -26,6 +65,7 @@ static bool found(search_t *s, uint32_t number)
     if (q->kind == TB_REACH) {
         const double distance = tb_distance(q->formula, &s->cursor, true);
         if (tb_holds(q->formula, &s->cursor)) {
+            tell_run(s, number);
             tb_say(q, TB_YES, "STUBBORN_SETS");
             return true;
         }
@@ -51,7 +91,8 @@ static bool searched(search_t *s)
         return false;
     }
     while (s->heap.count > 0U) {
-        tb_store_get(&s->store, tb_heap_pop(&s->heap), s->marking);
+        const uint32_t from = tb_heap_pop(&s->heap);
+        tb_store_get(&s->store, from, s->marking);
         tb_go_to(&s->cursor, s->marking);
         const bool is_reach = q->kind == TB_REACH;
         const uint32_t count =
@@ -66,6 +107,7 @@ static bool searched(search_t *s)
                 return false;
             }
             if (added == TB_ADDED) {
+                note_step(s, number, from, s->fire[i]);
                 if (!tb_fire(&s->cursor, s->fire[i]) || found(s, number)) {
                     return false;
                 }
@@ -76,9 +118,11 @@ static bool searched(search_t *s)
     return true;
 }
 
-static void answer(const tb_net_t *net, tb_question_t *q)
+static void answer(const tb_net_t *net, tb_question_t *q, bool is_told)
 {
     search_t s;
+    s.room = is_told ? (uint32_t)FIRST_STEPS : 0U;
+    s.step = is_told ? tb_new(s.room, sizeof *s.step) : NULL;
     s.question = q;
     tb_store_init(&s.store, net, NULL);
     tb_cursor_init(&s.cursor, net);
@@ -93,6 +137,9 @@ static void answer(const tb_net_t *net, tb_question_t *q)
             tb_say_bound(q, q->least, true, "STUBBORN_SETS");
         }
     }
+    if (s.step != NULL) {
+        tb_free(s.step, s.room, sizeof *s.step);
+    }
     tb_free(s.fire, net->transitions, sizeof *s.fire);
     tb_free(s.marking, net->places, sizeof *s.marking);
     tb_heap_free(&s.heap);
@@ -101,7 +148,7 @@ static void answer(const tb_net_t *net, tb_question_t *q)
     tb_store_free(&s.store);
 }
 
-void tb_reach(tb_job_t *job, double seconds)
+void tb_reach(tb_job_t *job, double seconds, bool is_told)
 {
     uint32_t open = 0U;
     for (uint32_t i = 0U; i < job->questions; i++) {
@@ -113,7 +160,7 @@ void tb_reach(tb_job_t *job, double seconds)
             const double left = seconds - tb_elapsed();
             tb_limit_time(tb_elapsed() + (left / (double)open)); /* what one leaves over the others get */
             open--;
-            answer(&job->net, q);
+            answer(&job->net, q, is_told);
         }
     }
 }

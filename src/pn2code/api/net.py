@@ -165,6 +165,7 @@ class Net:
         max_states: int | None = None,
         max_seconds: float | None = None,
         threads: int | None = None,
+        unfold: bool = True,
         found: bool = True,
         traces: str | Path | None = None,
     ) -> Verification:
@@ -174,6 +175,7 @@ class Net:
             properties: as docs/properties.md describes them, e.g. "deadlock free".
             max_states, max_seconds: limits; what they leave open is answered "inconclusive".
             threads: None: as many as there are processors.
+            unfold: ask the unfolded net where a limit ends the exploration (docs/verify.md).
             found: check the properties in NET.properties.toml and cell.toml, too.
             traces: a folder for the runs that show the answers; None: they are not kept.
 
@@ -187,6 +189,7 @@ class Net:
             max_states=max_states,
             max_seconds=max_seconds,
             threads=threads,
+            unfold=unfold,
             found=found,
             traces=Path(traces) if traces is not None else None,
         )

@@ -93,6 +93,7 @@ def verify(
     max_states: int | None,
     max_seconds: float | None,
     threads: int | None,
+    unfold: bool,
     found: bool,
     traces: Path | None,
 ) -> Verification:
@@ -109,6 +110,7 @@ def verify(
         max_states=max_states,
         deadline=Deadline.after(max_seconds),
         threads=threads or cores(),
+        unfolds=unfold,
     )
     with ExitStack() as stack:
         place = traces or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="pn2code-")))

@@ -37,8 +37,9 @@ class _Sample:
     field: int
 
 
+# The standard library's own, which has no public name.
 _KIND: Any = _Sample.__dataclass_fields__["field"]._field_type  # type: ignore[attr-defined]
-_PARAMETERS: Any = _Sample.__dataclass_params__  # type: ignore[attr-defined]
+_PARAMETERS: Any = _Sample.__dataclass_params__  # type: ignore[attr-defined]  # likewise
 
 
 _SHARED = frozenset(
@@ -81,7 +82,7 @@ def record(cls: type[T] | None = None, *, eq: bool = True) -> Any:
 def replace(item: T, /, **changes: Any) -> T:
     """What `dataclasses.replace` gives, for classes that are made here, in a quarter of its time."""
     kind = item.__class__
-    places, values_of = _values_of(kind)  # type: ignore[arg-type]
+    places, values_of = _values_of(kind)  # type: ignore[arg-type]  # a type variable is hashable
     values = [*values_of(item)]
     try:
         for name, value in changes.items():
@@ -95,7 +96,7 @@ def replace(item: T, /, **changes: Any) -> T:
 @cache
 def _values_of(kind: type) -> tuple[dict[str, int], Callable[[Any], tuple[Any, ...]]]:
     """The places of a class's fields by name, and what gives their values in that order."""
-    names = tuple(kind.__dataclass_fields__)  # type: ignore[attr-defined]
+    names = tuple(kind.__dataclass_fields__)  # type: ignore[attr-defined]  # it is a dataclass
     places = {name: place for place, name in enumerate(names)}
     if len(names) > 1:
         return places, attrgetter(*names)
@@ -139,7 +140,7 @@ def _made(cls: type[T], eq: bool, is_frozen: bool = True) -> type[T]:
     if eq:
         made.__eq__, hashed = _comparison(tuple(f.name for f in fields if f.compare))
         made.__hash__ = hashed if is_frozen else None
-    return made  # type: ignore[no-any-return]
+    return made  # type: ignore[no-any-return]  # it is made of `Any`
 
 
 def _field(cls: type, name: str, default: object) -> dataclasses.Field[Any]:
@@ -163,7 +164,7 @@ def _field(cls: type, name: str, default: object) -> dataclasses.Field[Any]:
         raise TypeError(f"{cls.__name__}.{name}: not for @frozen; use @dataclass")
     f.kw_only = False
     f._field_type = _KIND
-    return f  # type: ignore[no-any-return]
+    return f  # type: ignore[no-any-return]  # it is made of `Any`
 
 
 def _first_init(made: Any, fields: tuple[dataclasses.Field[Any], ...]) -> Callable[..., None]:

@@ -69,9 +69,9 @@ class HowFar:
         self._began = self._said = clock()
         self._count = 0
 
-    def __call__(self) -> None:
-        """One more is done."""
-        self._count += 1  # one is too few for a rate
+    def __call__(self, count: int = 1) -> None:
+        """One more is done, or so many."""
+        self._count += count  # one is too few for a rate
         now = self._clock()
         if now - self._said >= PERIOD_S and self._count > 1:
             self._said = now

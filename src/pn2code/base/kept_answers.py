@@ -177,6 +177,7 @@ def _dates_of_links(path: str, most: int = _MOST_LINKS) -> Iterator[int]:
         folder = os.path.dirname(path)  # noqa: PTH120 - it is asked for many files
         if stat.S_ISLNK(status.st_mode) and most:
             yield from _dates(status)
+            # pathlib takes longer, and this is done for each file.
             yield from _dates_of_links(os.path.join(folder, os.readlink(path)), most - 1)  # noqa: PTH115, PTH118
         if folder == path:
             return
@@ -198,7 +199,7 @@ def _stamp(path: str, status: os.stat_result) -> Stamp:
 
 def _library(path: str) -> Stamp:
     try:
-        return _stamp(path, os.stat(path))  # noqa: PTH116
+        return _stamp(path, os.stat(path))  # noqa: PTH116 - for each file, and pathlib takes longer
     except OSError:  # it is in an archive: nobody knows whether it has changed
         return path, 0, _NEVER, _NEVER
 

@@ -52,6 +52,7 @@ class Line:
         stream: where; stderr by default.
         first: what it says until there is something to tell.
         plain: whether to write lines where the stream is no terminal.
+        patient: there nothing is written before ten seconds have passed: what is over sooner leaves no lines behind.
         clock: seconds since any moment.
         silence: after so many seconds without a word they are counted.
     """
@@ -63,6 +64,7 @@ class Line:
         stream: IO[str] | None = None,
         first: str = "compiling ...",
         plain: bool = False,
+        patient: bool = False,
         clock: Callable[[], float] = time.monotonic,
         silence: float = SILENCE_S,
     ) -> None:
@@ -71,7 +73,8 @@ class Line:
         self._shown = shown and is_terminal
         self._is_plain = shown and plain and not is_terminal
         self._clock = clock
-        self._told = 0.0
+        self._told = clock() if patient else 0.0
+        self._is_patient = patient
         self._first = first
         self._written = False
         self._text, self._said = "", 0.0
@@ -81,6 +84,11 @@ class Line:
         self._suffix: Callable[[], str] | None = None
         self._over = threading.Event()
         self._counting: threading.Thread | None = None
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether anything that is said is written."""
+        return self._shown or self._is_plain
 
     def __enter__(self) -> Self:
         self._listening.__enter__()
@@ -144,7 +152,7 @@ class Line:
 
     def stage(self, text: str) -> None:
         """Shows a text that begins a new part of the work: it is a line of its own where lines stay."""
-        if self._is_plain:
+        if self._is_plain and not self._is_patient:
             self._write_line(text)
         else:
             self.say(text)
@@ -189,12 +197,12 @@ class Line:
 
 
 @contextmanager
-def told(what: str) -> Iterator[Line]:
+def told(what: str, *, shown: bool = True) -> Iterator[Line]:
     """What may take long and says nothing by itself: a terminal shows from the second second on how long it takes, and
     how far its loops are.
 
     Nothing else is to be printed meanwhile.
     """
-    with Line(first="") as line:
+    with Line(first="", shown=shown, plain=True, patient=True) as line:
         line.turn_to(what)
         yield line

@@ -30,14 +30,16 @@ class SoFar:
         found = _COUNT.match(text)
         self._count = found[1] if found is not None else text
 
-    def words(self) -> str:
-        """Behind what was not done; "": nothing had begun."""
+    def words(self, *, is_told: bool = False) -> str:
+        """Behind what was not done; "": nothing had begun. `is_told`: what is wrong is told nevertheless."""
         if not self._stages:
             return ""
         *done, last = self._stages
         count = f" ({self._count} when it was said last)" if self._count else ""
         before = "; ".join(done) or "nothing"
-        return (
-            f"; it was broken off in: {last}{count}. Done before: {before}. "
-            "Of all else nothing is known, and what was done answers nothing"
+        rest = (
+            "What was found to be wrong until then is told; of all else nothing is known"
+            if is_told
+            else "Of all else nothing is known, and what was done answers nothing"
         )
+        return f"; it was broken off in: {last}{count}. Done before: {before}. {rest}"

@@ -139,5 +139,5 @@ def _remove_empty(folder: str, now: float) -> None:
     for here, _, _ in os.walk(folder, topdown=False):
         if here != folder:
             with suppress(OSError):  # there is something in it
-                if now - os.stat(here).st_mtime > IN_USE_S:  # noqa: PTH116
-                    os.rmdir(here)  # noqa: PTH106
+                if now - os.stat(here).st_mtime > IN_USE_S:  # noqa: PTH116 - for each file
+                    os.rmdir(here)  # noqa: PTH106 - for each file

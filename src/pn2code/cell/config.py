@@ -12,8 +12,8 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.named_elsewhere import axes_of_all
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
-from pn2code.cell_file.logic import LED, PRIMITIVE
-from pn2code.cell_file.logic import CommandName as CommandName
+from pn2code.cell_file.primitive import LED, PRIMITIVE
+from pn2code.cell_file.primitive import CommandName as CommandName
 from pn2code.diagnostics import Origin
 from pn2code.diagnostics.accepted import Rule
 from pn2code.robot.commands import Handling

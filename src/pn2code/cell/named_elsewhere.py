@@ -7,7 +7,8 @@ from typing import Any
 
 from pn2code.cell import codes
 from pn2code.cell.tables import KeyPath, Tables
-from pn2code.cell_file.logic import PRIMITIVE, SENSOR
+from pn2code.cell_file.logic import SENSOR
+from pn2code.cell_file.primitive import PRIMITIVE
 from pn2code.diagnostics.suggestions import did_you_mean
 
 AlongAxes = tuple[tuple[str, bool], ...]

@@ -143,6 +143,7 @@ class _Checker:
                     self.config.locator.origin("primitives", name, "speed"),
                     hint=f"remove `speed`, or let the function take the {what} alone",
                 )
+            # Primitives have types of functions.
             elif primitive.command == "wait" and symbol.type.argument == UNIT:  # type: ignore[union-attr]
                 if not primitive.duration_s:
                     self.d.error(

@@ -9,7 +9,7 @@ from pn2code.cell import codes
 from pn2code.cell.config import COMMANDS, CommandName, Primitive
 from pn2code.cell.named_elsewhere import along_of, expect_named, fixed_of, table_of
 from pn2code.cell.tables import KeyPath, Tables
-from pn2code.cell_file.logic import LED, PRIMITIVE
+from pn2code.cell_file.primitive import LED, PRIMITIVE
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import CHANGES, EFFECTS, Effect, Handling
 

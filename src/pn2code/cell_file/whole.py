@@ -12,7 +12,6 @@ from pn2code.cell_file.logic import (
     DEVICE,
     INPUT,
     NET,
-    PRIMITIVE,
     PROPERTY,
     REPORT,
     SENSOR,
@@ -21,6 +20,7 @@ from pn2code.cell_file.logic import (
     VALUE,
 )
 from pn2code.cell_file.poses import FRAME, POSE
+from pn2code.cell_file.primitive import PRIMITIVE
 from pn2code.cell_file.scene import SCENE, ZONE
 from pn2code.cell_file.things import PART
 

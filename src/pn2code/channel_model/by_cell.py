@@ -85,7 +85,8 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.by_turns import loosened
 from pn2code.verify.controller.left_over import questions
-from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.not_modelled import NotModelledError
+from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes

@@ -19,41 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.partition import Partition
 from pn2code.channel_model.faults import Fault
-from pn2code.channel_model.life_cycle import LifeCycle
-from pn2code.channel_model.places import ChannelModel, Crashes, Files
-from pn2code.channel_model.rules import Emptying, Rules
-from pn2code.ml.core.terms import Exp
-from pn2code.net.builder import Arc
+from pn2code.channel_model.places import ChannelModel, Crashes
+from pn2code.channel_model.reading import Reading
+from pn2code.channel_model.rules import Rules
+from pn2code.channel_model.unseen_repeats import repeated_unseen
+from pn2code.channel_model.writing import Writing
 from pn2code.net.flat import ArcKind
-from pn2code.verify.controller.rival_transitions import hasty as hasty_ones
-from pn2code.verify.controller.rival_transitions import meek
-
-
-def repeated_unseen(partition: Partition) -> frozenset[int]:
-    """The transitions of scripts that touch no message and that may follow themselves without one that does."""
-    messages = {c.place for c in partition.channels}
-    takers: dict[int, set[int]] = {}
-    puts: dict[int, set[int]] = {}
-    for t in partition.net.transitions:
-        if partition.transition_owner[t.index] and not any(a.place in messages for a in t.arcs):
-            puts[t.index] = {a.place for a in t.arcs if a.kind in (ArcKind.OUTPUT, ArcKind.BOTH)}
-            for a in t.arcs:
-                if a.kind in (ArcKind.INPUT, ArcKind.BOTH):
-                    takers.setdefault(a.place, set()).add(t.index)
-    found = set()
-    for first in puts:
-        seen: set[int] = set()
-        todo = [first]
-        while todo:
-            after = {x for place in puts[todo.pop()] for x in takers.get(place, ())} - seen
-            seen |= after
-            todo += after
-        if first in seen:
-            found.add(first)
-    return frozenset(found)
-
 
 Extra = Callable[["Composer"], None]
 """Adds transitions when the composition is done."""
@@ -85,7 +58,7 @@ def compose(
     return composer.finish()
 
 
-class Composer(LifeCycle):
+class Composer(Writing, Reading):
     """Makes the net, part by part; public are the helpers for `Extra`."""
 
     def __init__(
@@ -97,20 +70,11 @@ class Composer(LifeCycle):
         loose: bool = False,
         hasty: bool = False,
     ) -> None:
-        super().__init__(partition, rules, crashes)
-        self.is_loose = loose
-        self._own_places()
-        is_exact = not (loose or crashes.life_cycle)
-        self.meek = frozenset(meek(partition)) if is_exact else frozenset()
-        self.undecided = self._undecided()
-        self.fresh = self._fresh()
-        self.to_decide = {o: self.memory(o, "is to decide") for o in self.fresh}
-        self.hasty = {partition.transition_owner[t] for t, _ in hasty_ones(partition) if hasty}
-        self.looks_on: dict[int, int] = {}
+        super().__init__(partition, rules, crashes, loose=loose, hasty=hasty)
         self._net_transitions()
         for o in range(len(self.sides)):
-            self._publishing(o)
-            self._reading(o)
+            self.publishing(o)
+            self.reading(o)
             if crashes.life_cycle:
                 self._stopping(o)
         if crashes.life_cycle:
@@ -120,35 +84,6 @@ class Composer(LifeCycle):
             for o in range(len(self.sides)):
                 self._crashing(o)  # last: all places of its memory are there now
         self.ends = frozenset[str]() if loose else frozenset(self._rest())
-
-    def _fresh(self) -> dict[int, int]:
-        """Where scripts begin to look that wait for one of several messages: by owner, a place.
-
-        Such a script takes what comes first in its order of what is there. Whatever was there before its last
-        transition it finds, since it looks at all files after it; what has come since it may have missed. Loosely, and
-        with crashes, scripts may miss anything.
-        """
-        owners = {self.partition.transition_owner[t] for t in self.meek}
-        found = {o: self.memory(o, "looks anew") for o in sorted(owners)}
-        for o, place in found.items():
-            own = (p for p in self.undecided if self.partition.place_owner[p] == o)
-            if any(self.b.places[p].initial is not None for p in own):
-                self.b.forget_initial(self.sides[o].calm)
-                self.b.begin(place, self.b.dot)
-        return found
-
-    def _undecided(self) -> frozenset[int]:
-        """The places of scripts, without their messages, where one of several messages may be waited for."""
-        messages = {c.place for c in self.partition.channels}
-        inputs = (ArcKind.INPUT, ArcKind.BOTH)
-        return frozenset(
-            a.place
-            for t in self.meek
-            for a in self.partition.net.transitions[t].arcs
-            if a.kind in inputs and a.place not in messages
-        )
-
-    # --- the net's own transitions ---------------------------------------------------------------
 
     def _net_transitions(self) -> None:
         reads = {f.made: f.read for f in self.files}
@@ -197,326 +132,6 @@ class Composer(LifeCycle):
                 self.b.absent(f.file),
                 self.wrong(Fault.LOST),
                 at=self.ghost,
-            )
-
-    # --- emptying and writing --------------------------------------------------------------------
-
-    def _publishing(self, o: int) -> None:
-        """Execution scheme, step 3: I4, I5, I3, I2."""
-        side = self.sides[o]
-        clears = [(self._empty, f) for f in self.files if f.channel.reader == o]
-        own = [f for f in self.files if f.channel.writer == o]
-        data = [f for f in own if f.channel.kind is ChannelKind.DATA]
-        flags = [f for f in own if f.channel.kind is ChannelKind.FLAG]
-        order = [*data, *flags] if self.rules.data_first else [*flags, *data]
-        writes = [(self._write, f) for f in order]
-        late = self.rules.empties is Emptying.AFTER
-        steps = [*writes, *clears] if late else [*clears, *writes]
-        here = self.says_of[o]
-        if o == 0:
-            for f in self.files:
-                if f.channel.reader == o or f.channel.writer == o:
-                    held = self.has(f.consumed) if f.channel.reader == o else self.any(f.made)
-                    self.step(
-                        f"{side.name}.publishes because of {f.channel.file}",
-                        "",
-                        self.off(side.calm),
-                        held,
-                        self.on(here),
-                        at=self.local,
-                    )
-        for i, (make, f) in enumerate(steps):
-            following = self.memory(o, f"says {i + 1}")
-            make(o, f, here, following)
-            here = following
-        self._goes_on(f"{side.name}.has published", o, here, self.local)
-
-    def _goes_on(self, name: str, o: int, here: int, at: int) -> None:
-        """A side has done something, and is calm, or looks at all files before it decides what comes next."""
-        calm = self.on(self.sides[o].calm)
-        if o not in self.fresh:
-            self.step(name, "", self.off(here), calm, at=at)
-            return
-        decides = self.to_decide[o]
-        self.step(name, "", self.off(here), self.b.absent(decides), calm, at=at)
-        anew = [self.off(decides), self.on(self.fresh[o])]
-        self.step(f"{name} and looks anew", "", self.off(here), *anew, at=at)
-
-    def _next(self, q: Exp) -> Exp:
-        """The number after a number."""
-        b = self.b
-        two, three = b.number(2), b.number(3)
-        return b.choice(b.less(q, two), two, b.choice(b.less(q, three), three, two))
-
-    def _empty(self, o: int, f: Files, here: int, following: int) -> None:
-        b, name, file = self.b, self.sides[o].name, f.channel.file
-        tmp = f".{file}.{name}.tmp"
-        self.step(
-            f"{name}.nothing to empty in {file}",
-            "",
-            self.off(here),
-            b.absent(f.consumed),
-            self.on(following),
-            at=self.local,
-        )
-        q = self.number("e")
-        counts = [b.take(f.next_in, q), b.put(f.next_in, self._next(q))]
-        if self.rules.empties is Emptying.NEVER:
-            self.step(
-                f"{name}.forgets to empty {file}",
-                "",
-                self.off(here),
-                self.off(f.consumed),
-                *counts,
-                self.on(following),
-                at=self.local,
-            )
-            return
-        half = self.memory(o, f"half 0 for {file}")
-        self.step(
-            f"{name}.begins 0 for {file}",
-            f"{name} begins to write `0` to {tmp}",
-            self.off(here),
-            self.off(f.consumed),
-            self.on(half),
-            at=self.unseen,
-        )
-        done = [self.off(half), self.on(following), *counts]
-        for arcs, lost in self._replaced(f):
-            self.step(
-                f"{name}.empties {file}" + (", with a message lost" if lost else ""),
-                f"{name} renames {tmp} over {file}: it is empty"
-                + (", and a message that nobody has consumed is lost" if lost else ""),
-                *done,
-                *arcs,
-                self.on(f.zero),
-                *([self.wrong(Fault.LOST)] if lost else []),
-            )
-
-    def _replaced(self, f: Files) -> Iterator[tuple[list[Arc], bool]]:
-        """The contents that a rename can replace, and whether that loses a message."""
-        b = self.b
-        yield [self.off(f.zero)], False
-        yield [b.take(f.file, self.message(f, "w", "k", b.number(1)))], False
-        yield [b.take(f.file, self.message(f, "w", "k", b.number(0)))], True
-
-    def _write(self, o: int, f: Files, here: int, following: int) -> None:
-        b, name, file = self.b, self.sides[o].name, f.channel.file
-        side = self.sides[o]
-        tmp = f".{file}.{name}.tmp"
-        v = self.value(f.made)
-        half = self.memory(o, f"half {file}")
-        after = self.memory(o, f"published {file}")
-        self.step(
-            f"{name}.nothing to write to {file}",
-            "",
-            self.off(here),
-            b.absent(f.made),
-            self.on(following),
-            at=self.local,
-        )
-        begin = [self.off(here), b.take(f.made, v), b.put(f.tmp, v), self.on(half)]
-        if self.rules.checks_empty:
-            begin.append(self.has(f.zero))
-            self.stop_or_fault(
-                o,
-                f"{name}.cannot write to {file}",
-                f"{name} has a message for {file}, which is not empty",
-                Fault.OVERRUN,
-                self.off(here),
-                self.any(f.made),
-                b.absent(f.zero),
-            )
-        into = tmp
-        if not self.rules.renames:
-            begin = [a for a in begin if a.place != f.zero]
-            begin += [self.off(f.zero), self.on(f.half)]
-            into = file
-        self.step(
-            f"{name}.begins {file}",
-            f"{name} begins to write a message to {into}",
-            *begin,
-            at=self.unseen if self.rules.renames else None,
-        )
-        q = self.number("q")
-        counts = [b.take(f.next_out, q), b.put(f.next_out, self._next(q))]
-        made = b.pair(v, self.number("s"), q, b.number(0))
-        done = [
-            self.off(half),
-            b.take(f.tmp, v),
-            b.test(side.session, self.number("s")),
-            *counts,
-            b.put(f.file, made),
-            self.on(after),
-        ]
-        if not self.rules.renames:
-            says = f"the message in {file} is whole"
-            self.step(f"{name}.ends {file}", says, *done, self.off(f.half))
-        else:
-            says = f"{name} renames {tmp} over {file}: the message is there"
-            self.step(f"{name}.renames {file}", says, *done, self.off(f.zero))
-            if not self.rules.checks_empty:
-                for used in (0, 1):
-                    old = b.pair(
-                        self.value(f.made, "o"), self.number("w"), self.number("k"), b.number(used)
-                    )
-                    self.step(
-                        f"{name}.overwrites {file} ({used})",
-                        f"{name} renames {tmp} over {file}, which held a message"
-                        + ("" if used else " that nobody had consumed: it is lost"),
-                        *done,
-                        b.take(f.file, old),
-                        *([] if used else [self.wrong(Fault.LOST)]),
-                    )
-        self.step(
-            f"{name}.wrote {file}",
-            "",
-            self.off(after),
-            b.absent(f.made),
-            self.on(following),
-            at=self.local,
-        )
-        self.step(
-            f"{name}.has two messages for {file}",
-            f"{name} has a second message for {file} in the same cycle",
-            self.off(after),
-            self.any(f.made),
-            self.wrong(Fault.OVERRUN),
-            at=self.local,
-        )
-
-    # --- reading ---------------------------------------------------------------------------------
-
-    def _reading(self, o: int) -> None:
-        """Execution scheme, step 1: the files are looked at one after the other (I6).
-
-        A look that finds nothing leaves no trace. So a round begins with the first file that holds something; those
-        before it were looked at earlier, and may have been filled since. Where it matters (`_fresh`), a round that
-        begins with the first file, whatever it holds, comes before all others. If scripts are hasty, they may see or
-        pass over what is there after that round, in any order, and decide late (`_looking_on`): they look in an order
-        of their own, more than once at a file, while messages come.
-        """
-        side = self.sides[o]
-        own = [f for f in self.files if f.channel.reader == o]
-        flags_first = self.rules.reads_flags_first or o != 0
-        own.sort(key=lambda f: (f.channel.kind is ChannelKind.FLAG) != flags_first)
-        looks = [self.memory(o, f"looks at {f.channel.file}") for f in own]
-        ends = [*looks[1:], side.calm]
-        following = ends
-        if o in self.fresh:
-            looks[0] = self.fresh[o]
-        if o in self.fresh and o in self.hasty:
-            following = self._looking_on(o, own)
-            ends = [*looks[1:], self.looks_on[o]]
-        for i, f in enumerate(own):
-            self._take(o, f, side.calm, following[i], "")
-            if i or o in self.fresh:
-                self._take(o, f, looks[i], ends[i], " as well")
-                self._nothing(o, f, looks[i], ends[i])
-            self._refuse(o, f)
-
-    def _looking_on(self, o: int, own: list[Files]) -> list[int]:
-        """A round in which a script sees of what is there whatever it likes; by file, where it is after that."""
-        side = self.sides[o]
-        looks = [self.memory(o, f"looks on at {f.channel.file}") for f in own]
-        following = [*looks[1:], side.calm]
-        self.looks_on[o] = looks[0]
-        for f, here, after in zip(own, looks, following, strict=True):
-            self._take(o, f, here, after, ", looking on")
-            file = f.channel.file
-            says = f"{side.name} does not look at {file} again"
-            self.step(f"{side.name}.passes over {file}", says, self.off(here), self.on(after))
-        return following
-
-    def _take(self, o: int, f: Files, here: int, after: int, how: str) -> None:
-        b, side, file = self.b, self.sides[o], f.channel.file
-        s, q = self.number("s"), self.number("q")
-        expected = [b.test(side.session, s)]
-        if self.rules.checks_seq:
-            expected.append(b.test(f.next_in, q))
-        taken = [
-            self.off(here),
-            b.absent(f.pending),
-            b.put(f.read, self.value(f.made)),
-            self.on(f.pending),
-            self.on(after),
-        ]
-        name, says = f"{side.name}.sees {file}{how}", f"{side.name} reads the message of {file}"
-        self.step(name, says, *taken, *expected, b.test(f.file, self.message(f)))
-        if not self.rules.checks_session:
-            older = b.less(self.number("w"), s)
-            self.step(
-                f"{name}, of another session",
-                f"{says}, which is of an earlier session",
-                *taken,
-                *expected,
-                b.test(f.file, self.message(f, "w")),
-                self.wrong(Fault.OLD),
-                guard=older,
-            )
-        if not self.rules.validates:
-            self.step(
-                f"{name}, torn",
-                f"{side.name} reads half a message from {file}",
-                self.off(here),
-                self.has(f.half),
-                self.wrong(Fault.TORN),
-            )
-
-    def _bad(self, o: int, f: Files) -> Iterator[tuple[str, list[Arc], Exp | None, Fault]]:
-        """Contents that are refused: in words, arcs, guard, and what that is."""
-        b, side = self.b, self.sides[o]
-        s, w, q, e = (self.number(x) for x in "swqe")
-        if not self.rules.renames and self.rules.validates:
-            yield "half a message", [self.has(f.half)], None, Fault.REFUSED
-        if self.rules.checks_session:
-            found = [b.test(side.session, s), b.test(f.file, self.message(f, "w"))]
-            yield "a message of an earlier session", found, b.less(w, s), Fault.STALE
-            yield "a message of a later session", found, b.less(s, w), Fault.REFUSED
-        if self.rules.checks_seq:
-            found = [
-                b.test(side.session, s),
-                b.test(f.file, self.message(f, "s")),
-                b.test(f.next_in, e),
-            ]
-            yield "a message with another number", found, b.less(q, e), Fault.REFUSED
-            yield "a message with another number", found, b.less(e, q), Fault.REFUSED
-
-    def _refuse(self, o: int, f: Files) -> None:
-        side, file = self.sides[o], f.channel.file
-        for what, arcs, guard, fault in self._bad(o, f):
-            name = f"{side.name}.refuses {file}"
-            says = f"{side.name} finds {what} in {file}"
-            arcs = [self.off(side.calm), self.b.absent(f.pending), *arcs]
-            if fault is Fault.STALE:
-                self.step(name, says, *arcs, self.wrong(fault), guard=guard)
-            else:
-                self.stop_or_fault(o, name, says, fault, *arcs, guard=guard)
-
-    def _nothing(self, o: int, f: Files, here: int, after: int) -> None:
-        side, file = self.sides[o], f.channel.file
-        name = f"{side.name}.sees nothing in {file}"
-        says = f"{side.name} looks at {file}, which is empty"
-        # Loosely, a message that is there may be passed over: it could have come a little later.
-        empty = [] if self.is_loose else [self.has(f.zero)]
-        self.step(name, says, self.off(here), *empty, self.on(after))
-        self.step(
-            f"{side.name}.has read {file}",
-            "",
-            self.off(here),
-            self.has(f.pending),
-            self.on(after),
-            at=self.local,
-        )
-        for what, arcs, guard, _ in self._bad(o, f):
-            self.step(
-                f"{name} yet",
-                f"{side.name} finds {what} in {file}, and waits",
-                self.off(here),
-                self.b.absent(f.pending),
-                *arcs,
-                self.on(after),
-                guard=guard,
             )
 
     # --- the ends that are wanted, and the others ------------------------------------------------

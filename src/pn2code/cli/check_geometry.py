@@ -54,12 +54,13 @@ def check_geometry(
     deadline = Deadline.of_command(None)
     limits = Limits(max_states=max_states, deadline=deadline, threads=jobs or cores())
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
-    try:
-        with (
-            in_time(max_seconds, path, late, form, so_far.words),
-            playing(form),
-            line as progress,
-        ):
+    until_then: list[Geometry] = []
+
+    def done() -> str:
+        return so_far.words(is_told=bool(until_then))
+
+    def in_its_time() -> Geometry | None:
+        with in_time(max_seconds, path, late, form, done), playing(form), line as progress:
 
             def stage(text: str) -> None:
                 so_far.stage(text)
@@ -69,7 +70,15 @@ def check_geometry(
                 so_far.say(text)
                 progress.say(text)
 
-            found = examine(opened, layout, limits, folder, d, stage, say)
+            return examine(opened, layout, limits, folder, d, stage, say, until_then.append)
+
+    try:
+        try:
+            found = in_its_time()
+        except typer.Exit:
+            if not until_then:
+                raise
+            found = until_then[0]
         if found is None or d.has_errors:
             stop(d, form)
         if pictures:

@@ -41,8 +41,8 @@ EPILOG = """Examples:
 
 The folder holds `model.pnml` and the XML files of the examinations (docs/contest.md).
 """
-Examination = StrEnum("Examination", {name: name for name in ALL})  # type: ignore[misc]
-Method = StrEnum("Method", {name: name for name in METHODS})  # type: ignore[misc]
+Examination = StrEnum("Examination", {name: name for name in ALL})  # type: ignore[misc]  # its members are a table
+Method = StrEnum("Method", {name: name for name in METHODS})  # type: ignore[misc]  # its members are a table
 
 
 def contest(

@@ -155,20 +155,16 @@ def draw(
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
-    if kind == "html" and frames:
-        _write({Path(output): drawing.steps(path, frames, chosen, last, trace)}, form)
-    elif kind == "html":
-        _write({Path(output): drawing.html(path)}, form)
-    elif kind == "folder":
-        _write({Path(output) / name: text for name, text in drawing.files().items()}, form)
-    elif kind == "-":
-        sys.stdout.write(drawing.svg())
-    elif kind == ".png":
-        _write({Path(output): raster.png(drawing.svg())}, form)
-    elif kind == ".pdf":
-        _write({Path(output): raster.pdf(list(drawing.files().values()))}, form)
+    files: dict[str, str | bytes]
+    with told("drawing"):
+        if kind == "html" and frames:
+            files = {output: drawing.steps(path, frames, chosen, last, trace)}
+        else:
+            files = drawing.made(kind, output, path)
+    if kind == "-":
+        sys.stdout.write(str(files[output]))
     else:
-        _write({Path(output): drawing.svg()}, form)
+        _write({Path(name): made for name, made in files.items()}, form)
     drawing.note_arranged(d)
     _report(d, marking or trace is not None, form)
 
@@ -346,6 +342,18 @@ class _Drawing:
         names = {p.id: f"{stem}.svg" for p, stem in zip(self.pages, stems, strict=True)}
         links = Links(lambda identity: names.get(identity, ""))
         return {names[p.id]: page_svg(self.document, p, self.overlay(p), links) for p in self.pages}
+
+    def made(self, kind: str, output: str, path: Path) -> dict[str, str | bytes]:
+        """The files of a kind, by name."""
+        if kind == "html":
+            return {output: self.html(path)}
+        if kind == "folder":
+            return {str(Path(output) / name): text for name, text in self.files().items()}
+        if kind == ".png":
+            return {output: raster.png(self.svg())}
+        if kind == ".pdf":
+            return {output: raster.pdf(list(self.files().values()))}
+        return {output: self.svg()}
 
     def html(self, path: Path) -> str:
         """One HTML file."""

@@ -39,7 +39,7 @@ REGISTERING = (
     "pn2code.text_form.codes",
     "pn2code.reading.codes",
     "pn2code.robot.codes",
-    "pn2code.run.cell",
+    "pn2code.run.codes",
     "pn2code.semantics.codes",
     "pn2code.simulate.codes",
     "pn2code.tdl.codes",

@@ -197,7 +197,7 @@ def _leave(code: str | int | None) -> NoReturn:
 
 def _unread() -> None:
     """The reader of our output has gone (`pn2code ... | head`): nothing more can be said."""
-    sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+    sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123 - it stays open
     os.dup2(sys.stdout.fileno(), 1)
 
 

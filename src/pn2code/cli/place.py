@@ -228,8 +228,8 @@ def _ran(
     out: Path,
     d: Diagnostics,
 ) -> RunRecord | None:
-    from pn2code.run.cell import RunOptions
     from pn2code.run.placed import run_placed
+    from pn2code.run.prepare import RunOptions
 
     # Unchecked: in the layout of cell.toml arms may stand where they cannot do their work, which is why this was asked.
     options = RunOptions(

@@ -11,7 +11,7 @@ from pn2code.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from pn2code.replay.motion import Motion
-    from pn2code.run.cell import RunResult
+    from pn2code.run.results import RunResult
 
 
 def write_replay(result: RunResult, motion: Motion, out: Path, *, wanted: bool) -> None:

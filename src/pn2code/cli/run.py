@@ -32,8 +32,8 @@ from pn2code.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from pn2code.live.view import LiveView
-    from pn2code.run.cell import Prepared
     from pn2code.run.hand import Hand
+    from pn2code.run.prepare import Prepared
 
 EPILOG = """Examples:
 
@@ -171,8 +171,9 @@ def run(
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.run.alone import alone_in
-    from pn2code.run.cell import RunOptions, run_cell
-    from pn2code.run.engine import Observer
+    from pn2code.run.cell import run_cell
+    from pn2code.run.observer import Observer
+    from pn2code.run.prepare import RunOptions
     from pn2code.run.progress import Progress
 
     if speed != 1.0 and not realtime:

@@ -16,8 +16,9 @@ from pn2code.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from pn2code.replay.motion import Motion
-    from pn2code.run.cell import RunOptions, RunResult
     from pn2code.run.cycles import Cycles, Plan, Spread
+    from pn2code.run.prepare import RunOptions
+    from pn2code.run.results import RunResult
     from pn2code.run.stops import Rate
 
 

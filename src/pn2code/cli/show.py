@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.progress_line import told
 from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -103,7 +104,10 @@ def show(
     other = None if compare is None else _described(compare, net, values, steps, files, form)
     names = _names(run, compare) if compare is not None else ("", "")
     try:
-        made = _gltf(shown, form) if is_gltf else page(shown, other, names=names).encode("utf-8")
+        with told("writing the page"):
+            made = (
+                _gltf(shown, form) if is_gltf else page(shown, other, names=names).encode("utf-8")
+            )
         contents = {output: made}
         said = sentences(differences(shown, other)) if other is not None else []
     except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as problem:

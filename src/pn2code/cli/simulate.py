@@ -194,12 +194,18 @@ def simulate(
     connected = sockets is not None
     program = monitors_of(opened.examined, d, connected=connected) if monitors else None
     found: Replications | None = None
-    with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+    most = _default_steps(opened, until) if steps is None else steps
+    line = ProgressLine(
+        shown=not (as_json or quiet),
+        steps=most or 0,
+        runs=replications or 1,
+    )
+    with Interrupts() as interrupts, line as progress:
         request = Request(
             net=opened.flat,
             initial=opened.initial,
             storage=opened.storage,
-            steps=_default_steps(opened, until) if steps is None else steps,
+            steps=most,
             seed=seed,
             until=limit,
             trace=trace,

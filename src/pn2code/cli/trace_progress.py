@@ -12,11 +12,13 @@ class TraceProgress(Line):
 
     Args:
         shown: whether anything is shown at all.
-        plain: whether lines are written where that is no terminal.
+        plain: whether lines are written where that is no terminal as soon as it begins, and not after ten seconds only.
     """
 
     def __init__(self, *, shown: bool = True, plain: bool = False) -> None:
-        super().__init__(shown=shown, first="repeating the trace ...", plain=plain)
+        super().__init__(
+            shown=shown, first="repeating the trace ...", plain=True, patient=not plain
+        )
         self._began = time.monotonic()
 
     def report(self, steps: int, share: float) -> None:

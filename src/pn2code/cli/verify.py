@@ -15,6 +15,7 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.os_reason import os_reason
+from pn2code.base.progress_line import told
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
@@ -54,6 +55,7 @@ from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.asked import files as asked_files
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.unfolded.look import ALONE
 from pn2code.verdict.whole import (
     MOST_COLOURS,
     Checks,
@@ -163,6 +165,15 @@ def verify(
             help="Explore the full state space, even of a large cell, and with `--reduce`.",
         ),
     ] = False,
+    unfold: Annotated[
+        bool | None,
+        typer.Option(
+            "--unfold/--no-unfold",
+            help="Ask the unfolded net at once, without exploring one marking after the other; or never.  "
+            "(default: where a limit ends the exploration)",
+            show_default=False,
+        ),
+    ] = None,
     spill: Annotated[
         Path | None,
         typer.Option(
@@ -304,6 +315,11 @@ def verify(
     properties it is 0 if all are true, 1 if one is false, and 3 if one is not known and none is false. With a
     cell.toml the checks of its supervisor count in the same way.
     """
+    if unfold and (reduce or approximate or max_states is not None):
+        raise typer.BadParameter(
+            "it explores no marking, so that nothing limits, reduces or approximates how it explores them",
+            param_hint="--unfold",
+        )
     deadline = Deadline.of_command(max_seconds)
     check_kind(draw_to, GRAPH_KINDS, "--draw")
     check_kind(plot_to, PLOT_KINDS, "--plot")
@@ -326,6 +342,11 @@ def verify(
             if swarm is not None:
                 check_net(opened)
             asked = question(opened, texts, file, d, found=found_properties)
+            if unfold and opened.config is not None:
+                raise typer.BadParameter(
+                    "what is said of a cell is said of its programs, which are explored",
+                    param_hint="--unfold",
+                )
             if durations and opened.config is None:
                 raise typer.BadParameter(
                     f"only a cell has durations, and there is no cell.toml beside `{net}`",
@@ -336,7 +357,7 @@ def verify(
     if d.has_errors:
         stop(d, form)
     limits = Limits(
-        max_states=max_states,
+        max_states=ALONE if unfold else max_states,
         deadline=deadline,
         memory=memory,
         threads=threads or cores(),
@@ -348,6 +369,7 @@ def verify(
         reductions=reductions,
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
+        unfolds=unfold is not False,
     )
     is_cell = opened.config is not None and check_controller
     with (
@@ -391,8 +413,10 @@ def verify(
                 )
         if looked is None:
             stop(d, form)
-        _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
-        said = conclude(looked, opened, asked, limits, folder, d, checks)
+        with told("drawing the pictures", shown=not quiet) as after:
+            _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
+            after.turn_to("finding what the answers say")
+            said = conclude(looked, opened, asked, limits, folder, d, checks)
         if durations:
             said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
         if in_full:  # sorting all colours and making texts of them takes time, too
@@ -412,7 +436,8 @@ def verify(
                     complete=said.found.seen.markings or said.found.why == "decided",
                     deadline=deadline,
                 )
-            _write_report(said, subject, report_to, d)
+            with told("writing the report", shown=not quiet):
+                _write_report(said, subject, report_to, d)
         if not as_json and not quiet:
             typer.echo(full(said) if in_full else screen(said))
         print_diagnostics(d.sorted(), form)

@@ -26,9 +26,10 @@ SHOWN_STEPS = 40
 def full(said: Said) -> str:
     """The report, then all runs."""
     net, found = said.net, said.found
+    is_explored = found.unfolded is None or not found.unfolded.is_alone
     parts = [
         report(net, found, None, said.answers, said.control, said.counts).rstrip(),
-        _figures(found),
+        *([_figures(found)] if is_explored else ()),
         *(f"Perhaps {line}" for line in growing_lines(net, found)),
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():

@@ -32,9 +32,9 @@ def screen(said: Said) -> str:
     """The verdict, sizes, what failed, and the way there."""
     closed = ", as a closed net" if said.control is not None else ""
     lines = [f"State space of {said.net.file}{closed}", ""]
-    if not said.found.complete:
-        partial = f"PARTIAL: {outcome.header(said.net, said.found, said.counts)}"
-        lines += [*textwrap.wrap(partial, WIDTH), ""]
+    head = outcome.header(said.net, said.found, said.counts)
+    if head:
+        lines += [*textwrap.wrap(f"PARTIAL: {head}", WIDTH), ""]
     lines += [*sizes_of(said), *crowd_of(said)]
     remarks = list(as_it_runs(said))
     items = tuple(items_of(said))

@@ -24,7 +24,8 @@ def sizes_of(said: Said) -> Iterator[str]:
     if found.known is not None:
         yield from _of_counted(said, found.known)
         return
-    for name, what in basis.complete(found):
+    is_explored = found.unfolded is None or not found.unfolded.is_alone
+    for name, what in basis.complete(found) if is_explored else ():
         more = ""
         if name == "Markings":
             more = f", in {found.seconds:.2f} s; compiled in {found.compile_seconds:.1f} s"
@@ -43,7 +44,9 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row("Reduced by", ", ".join(found.reductions))
     for name, what in unfolded_text.rows(net, found):
         yield from row(name, what)
-    if found.unfolded is not None and not found.unfolded.why:
+    if found.unfolded is not None and found.unfolded.is_asked:
+        if not found.knows_whole:
+            yield from _growing(net, found)
         return
     yield from row("Dead markings", dead_markings(found))
     if found.graph is not None:
@@ -59,7 +62,12 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row("Live transitions", f"{live} of {len(net.transitions)}")
     if found.bounds is not None:
         yield from row("Bounds", _most(net, found))
-    yield from (x for line in growing_lines(net, found) for x in row("Grows, perhaps", line))
+    yield from _growing(net, found)
+
+
+def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
+    for line in growing_lines(net, found):
+        yield from row("Grows, perhaps", line)
 
 
 def _of_counted(said: Said, known: Known) -> Iterator[str]:

@@ -195,6 +195,7 @@ class _Closed:
         for channel in self._partition.channels:
             tokens = changes.get(channel.place)
             if channel.writer != SUPERVISOR and tokens is not None:
+                # Channels hold multi-sets, which have a length.
                 held, holds = len(before.places[channel.place]), len(tokens)  # type: ignore[arg-type]
                 if holds > 1 or (held and holds):
                     return True

@@ -17,7 +17,7 @@ from itertools import islice, product
 from pn2code.contest.tables import Tables
 from pn2code.ml.core.terms import Apply, Builtin, Exp, Lit, RecordExp
 from pn2code.net.flat import ArcInscription, ArcKind, FlatNet, FlatTransition, Form
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import NotFinite

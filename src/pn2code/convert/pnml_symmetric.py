@@ -45,7 +45,7 @@ from pn2code.ml.core.terms import (
 from pn2code.ml.library.datatypes import FALSE, TRUE
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition, Form
 from pn2code.pnml.declarations import minus_text
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit, Value

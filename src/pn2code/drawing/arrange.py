@@ -231,6 +231,7 @@ def _order(part: _Part) -> None:
                 i: sum(rank[n] for n in sides[i]) / len(sides[i]) if sides[i] else rank[i]
                 for i in members
             }
+            # The default keeps the weights of this round.
             members.sort(key=lambda i, w=weight: (w[i], rank[i]))  # type: ignore[misc]
             for k, i in enumerate(members):
                 rank[i] = float(k)

@@ -16,6 +16,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from pn2code.base.how_far import beginning, counted
 from pn2code.drawing.edges import Edges
 
 KINDS = (".png", ".pdf")
@@ -62,6 +63,7 @@ def pdf(pages: Sequence[str]) -> bytes:
     import pypdf
     import svg2pdf_py
 
+    beginning(f"making a PDF of {len(pages):,} page{'s' if len(pages) > 1 else ''}")
     fonts = svg2pdf_py.FontDatabase.system()
     fonts.load_fonts_dir(str(_fonts()))
     spare = [svg.replace("sans-serif", f"'{_SPARE}', sans-serif") for svg in pages]
@@ -73,7 +75,7 @@ def pdf(pages: Sequence[str]) -> bytes:
         strict=True,
     )
     edges = Edges()
-    for page, shapes in pairs:
+    for page, shapes in counted(list(pairs), "writing pages"):
         whole.append(io.BytesIO(page))
         edges.draw(whole, whole.pages[-1], pypdf.PdfReader(io.BytesIO(shapes)).pages[0])
     whole.metadata = None  # neither date nor program

@@ -121,7 +121,7 @@ class _Builder:
         """A place or transition."""
         centre = (round(raw.layout.x), -round(raw.layout.y))
         if self.arranged:
-            centre = self.arranged.centres[raw.id]  # type: ignore[assignment]
+            centre = self.arranged.centres[raw.id]  # type: ignore[assignment]  # a pair of numbers, too
         w, h = node_size(raw.layout, size)
         is_round = raw.layout.shape == "ellipse" or (raw.layout.shape == "" and kind == "place")
         caption = tuple(s.strip() for s in text.lines(raw.caption)) if raw.caption else ()

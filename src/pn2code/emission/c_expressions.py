@@ -255,7 +255,7 @@ class Expressions:
     def _member(self, e: ir.Member) -> str:
         record, arrow = self.inside(e.record, _UNARY), "."
         is_boxed = isinstance(e.record, ir.Argument) and self._is_boxed(e.record)
-        if is_boxed and not self._is_unsafe(e.record):  # type: ignore[arg-type]
+        if is_boxed and not self._is_unsafe(e.record):  # type: ignore[arg-type]  # it is an argument where it is boxed
             record, arrow = record[2:-1], "->"  # (*p).x is p->x
         definition = self._types.definitions[e.record.type.name]
         assert isinstance(definition, ir.StructDef)

@@ -20,8 +20,10 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`null`** tests a list, with a warning; in the engine it is the time 0, which hides the test.
 * **`inst ()`**, the number of the page instance, is in arcs, guards, delays and code segments what it is in the engine's simulator, and so it is in functions that they call.
   The engine's state-space tool has the number of another instance when a transition occurs (in a guard the right one), so that its graphs of such nets differ. In initial markings
-  the engine has a number that is the same for all instances of a page; here it is that of the instance, and `check` warns. Constants that ask for it (`val n = inst ()`: in the engine 1, or
-  what it has looked at last when it checks a declaration again), colour sets and priorities are refused
+  the engine has what it noted when it made the place before: the number of instances of that place's page, and 1. So it is the same for all instances of a page, mostly 2 in a net
+  without hierarchy, and depends on the order in which its editor has sent the pages; here it is the number of the instance, and `check` warns. Constants, references and bounds of
+  colour sets that ask for it (`val n = inst ()`) have 1, as in the engine when it opens the net, with a warning (`declaration-instance`): it has what it looked at last when it checks
+  the declaration again. Values that hold a function which asks (`val f = [inst]`), functions of structures that do, predicates of subsets and priorities are refused
   (`unsupported-function`), and so is a function that is used after a name in it has been declared again.
 * **A variable whose name is none of CPN ML** (`n-1`, `1n`) is accepted by the engine as long as nothing uses it; here it is refused. So are two transitions
   of one id, whose arcs cannot be told apart.
@@ -29,7 +31,8 @@ Inscriptions and expressions also differ in the following, each on purpose:
   and again at the start, in an order of its own. `check` warns of them.
 * **A subset's list that is computed** (`subset INT with values`) is refused by the engine; here it is accepted, with a warning.
 * **The values of an `intinf` with bounds** are listed from the lowest by `CS.all ()`; the engine lists them from the highest.
-* **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0.
+* **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0; so it is with an
+  `IntInf.xorb` that is ~(2^30), ~(2^60), ...: `IntInf.xorb (1073741823, ~1)`.
 * **Undetermined type variables** after the value restriction (`val f = rev o rev`) become `unit`; in SML/NJ each becomes a new type.
 * **`ListMergeSort.sort`** and `ArrayQSort.sort` keep the order of equal elements; the engine's may exchange them.
 * **`gamma` and `beta`** of parameters that are not above zero raise `Gamma` and `Beta`; the engine has some number, or draws without end. All other

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.deadline import OverError
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import Say, silent
 from pn2code.cell.config import CellConfig
@@ -24,12 +25,13 @@ from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_held
 from pn2code.geometry.large import MOST_OF_PART, answer_of, sought_in
 from pn2code.geometry.look import Look, Options
+from pn2code.geometry.progress import LATE
 from pn2code.geometry.words import reason
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
-from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.exploring.limits import Limits, Order
 
 
@@ -67,6 +69,7 @@ def examine(
     d: Diagnostics,
     stage: Callable[[str], None] = silent,
     say: Say = silent,
+    late: Callable[[Geometry], None] = lambda _found: None,
 ) -> Geometry | None:
     """Looks at everything; None after an error that was reported.
 
@@ -77,6 +80,7 @@ def examine(
         folder: of the traces.
         d: gets the errors.
         stage: hears in words what is done; say: and how far it is.
+        late: hears what is wrong, if the time is up (an `OverError` leaves this) and something was found until then.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
@@ -157,9 +161,21 @@ def examine(
             if layout_ is None:
                 return Geometry((), reason(graph.why))
             found.append((layout_, cell))
+        except OverError:
+            found.append((looking.so_far(), cell))
+            found += [(_untouched(*rest), rest[1]) for rest in cells[len(found) :]]
+            if any(x.answer == "no" for x, _ in found):
+                late(Geometry(tuple(found)))
+            raise
         finally:
             looking.close()
     return Geometry(tuple(found))
+
+
+def _untouched(name: str, cell: RobotCell) -> Layout:
+    """A layout that nobody has looked at."""
+    devices = tuple(r.name for r in cell.devices)
+    return Layout(name, 0, 0, (), (), 0, 0, 0.0, LATE, devices=devices)
 
 
 def cell_of(opened: OpenNet, d: Diagnostics) -> CellConfig | None:

@@ -65,6 +65,7 @@ def answer_of(looking: Look, wider: CellGraph, part: PartOf) -> Layout:
             shown = looking.seen(looking.situations(graph))
             moves = {_which(m): m for m in shown.moves if m.answer == "no"} | moves
             pairs = {_which_pair(p): p for p in shown.pairs if p.answer == "no"} | pairs
+            looking.progress.keep(moves.values(), pairs.values())
     found_moves = tuple(m if m.answer == "yes" else _supposed(m, moves) for m in seen.moves)
     found_pairs = tuple(_supposed_pair(p, pairs) for p in seen.pairs)
     return replace(
@@ -113,6 +114,7 @@ def sought_in(looking: Look, why: str, part: PartOf) -> Layout | None:
             stopped=layout.stopped or own.stopped,
             open_at=layout.open_at or own.open_at,
         )
+        looking.progress.keep(moves.values(), pairs.values())
         looking.keep_runs([*moves.values(), *pairs.values(), *layout.open_at])
         if not graph.why:
             break  # that was all of it

@@ -11,10 +11,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from pn2code.base.deadline import OverError
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.answers import Around, Layout, Move, Open, Pair, Proposal, Verdict
+from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.around import around_of
 from pn2code.geometry.compare import Comparison
@@ -23,6 +24,7 @@ from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.part_names import as_in_runs, as_seen, gap_as_seen, like, shown
 from pn2code.geometry.pieces import ROUNDING
+from pn2code.geometry.progress import LATE, Meeting, Progress, Seen
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
@@ -64,44 +66,6 @@ class Options:
     say: Say = silent
 
 
-@frozen(eq=False)
-class _Meeting:
-    """Two that do not surely keep apart, and where that is so first."""
-
-    robots: tuple[str, str]
-    transitions: tuple[str, str]
-    doing: tuple[str, str]
-    apart: Apart
-    met: Met
-    things: tuple[str, str] = ("", "")
-    around: Around | None = None
-
-    @property
-    def told(self) -> tuple[object, ...]:
-        """What is told of it: where it is the same, it is one."""
-        gap = self.apart.where
-        links = (gap.a, gap.b) if gap is not None else None
-        return self.robots, self.transitions, self.doing, self.things, self.apart.outcome, links
-
-
-@frozen
-class Seen:
-    """What was seen of a layout.
-
-    Args:
-        arms: what does not surely keep apart of two arms, by what they do; parts: of arms and parts that stand.
-    """
-
-    moves: tuple[Move, ...]
-    arms: dict[tuple[Side, Side], Pair]
-    parts: tuple[Pair, ...]
-
-    @property
-    def pairs(self) -> tuple[Pair, ...]:
-        """All that does not surely keep apart."""
-        return tuple(dict.fromkeys((*self.arms.values(), *self.parts)))
-
-
 class Look:
     """One layout."""
 
@@ -115,6 +79,7 @@ class Look:
         self.robots = tuple(r.name for r in cell.moving)
         self.runs: dict[tuple[Situations, int, tuple[int, ...]], Run] = {}
         self._numbered = 0
+        self.progress = Progress()
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -124,7 +89,7 @@ class Look:
         """All that is known."""
         began = time.perf_counter()
         found = self.situations(self.graph)
-        seen = self.seen(found)
+        seen = self.progress.seen = self.seen(found)
         bad = {sides: pair for sides, pair in seen.arms.items() if pair.answer == "no"}
         touching = [sides for sides, pair in bad.items() if not pair.is_held]
         touching += dict.fromkeys(x for x in found.at_once() if x not in touching)
@@ -135,17 +100,66 @@ class Look:
             zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
         return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
 
+    def so_far(self) -> Layout:
+        """What is wrong, when the time is up: only that is certain. How deep things overlap is not searched for."""
+        began, known = time.perf_counter(), self.progress
+        found = known.found
+        if found is not None and known.seen is not None:  # a place that helps was being looked for
+            return self.layout_of(found, known.seen.moves, known.seen.pairs, began)
+        moves, pairs = list(known.moves), list(known.pairs)
+        if found is not None and not found.graph.wider:
+            moves += self._wrong_moves(found)
+            touching = [m for m in (*known.arms.values(), *known.parts.values()) if m.is_touch]
+            first = {m.told: m for m in reversed(touching)}
+            pairs += [_met(m, m.apart, self._run(found, m.met)) for m in reversed(first.values())]
+            pairs += self._turning(found)
+        return Layout(
+            self.layout,
+            len(found.graph.arcs) if found is not None else 0,
+            len(found.situations) if found is not None else 0,
+            tuple(moves),
+            tuple(pairs),
+            self.comparison.compared,
+            self.comparison.sweeper.queries,
+            0.0,
+            LATE,
+            devices=tuple(r.name for r in self.cell.devices),
+        )
+
+    def _wrong_moves(self, found: Situations) -> Iterator[Move]:
+        """What cannot be done, of what was looked at, and of what cannot even be planned."""
+        known = self.progress
+        yield from (m for m in known.at_start if m.answer == "no")
+        yield from (m for m in (*known.rows.values(), *known.handled.values()) if m.answer == "no")
+        told: set[object] = set(known.handled)
+        for (number, _element), met in found.activities.items():
+            activity = self.doing.activities[number]
+            for leg, contents in activity.legs:
+                load = contents.load(leg.robot)
+                own = (leg.number, spots(tuple(p for p in load if p.holder)))
+                if leg.fault is not None and own not in known.rows and own not in told:
+                    told.add(own)
+                    yield self._move(found, leg, load, met)
+            if activity.is_part:
+                row = self._handling(found, activity, met)
+                key = (row.transition, row.command, row.begins)
+                if key not in told:
+                    told.add(key)
+                    yield row
+
     def situations(self, graph: CellGraph) -> Situations:
         """All of them."""
         self.options.stage("looking where arms can be ...")
         found = Situations(graph, self.doing, self.robots)
+        self.progress.begin(found)
         found.explore(HowFar(self.options.say, "looking where arms can be", noun="situations"))
         return found
 
     def seen(self, found: Situations) -> Seen:
         """All moves, and what does not surely keep apart."""
         self.options.stage("sweeping moves ...")
-        moves = self._moves(found)
+        at_start = self.progress.at_start = tuple(self._at_start())
+        moves = [*at_start, *self._moves(found)]
         self.options.stage("sweeping pairs ...")
         arms = self._pairs(found)
         return Seen(tuple(moves), arms, (*self._parts(found), *self._turning(found)))
@@ -208,14 +222,13 @@ class Look:
     # --- moves -----------------------------------------------------------------------------------
 
     def _moves(self, found: Situations) -> list[Move]:
-        rows: dict[tuple[int, str], Move] = {}
+        rows, handled = self.progress.rows, self.progress.handled
         looked: set[tuple[int, str]] = set()
-        handled: dict[tuple[str, str, str], Move] = {}
         activities = (self.doing.activities[number] for number, _ in found.activities)
         legs = ((x, c.load(x.robot)) for a in activities for x, c in a.legs)
         with self.comparison.moves_ahead(filter(self._is_looked_at, legs), self.options.jobs):
             self._each_move(found, rows, looked, handled)
-        return [*self._at_start(), *rows.values(), *handled.values()]
+        return [*rows.values(), *handled.values()]
 
     @staticmethod
     def _is_looked_at(moved: tuple[Leg, Load]) -> bool:
@@ -342,7 +355,7 @@ class Look:
 
     def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
         """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
-        met_: dict[tuple[Side, Side], _Meeting] = {}
+        met_ = self.progress.arms
         activities = self.doing.activities
         pairs = [(activities[n], activities[m]) for n, m in found.pairs]
         all_sides = [
@@ -367,7 +380,7 @@ class Look:
         pair: tuple[Activity, Activity],
         sides: tuple[Side, Side],
         met: Met,
-        met_: dict[tuple[Side, Side], _Meeting],
+        met_: dict[tuple[Side, Side], Meeting],
         found: Situations,
     ) -> bool:
         """Notes where two activities do not surely keep apart; gives whether they touch."""
@@ -395,7 +408,7 @@ class Look:
                 robots, things = (leg.robot, other.robot), (thing, its_thing)
                 legs = (x for x in (*a.legs, *b.legs) if x[0] is leg or x[0] is other)
                 around = around_of(found, met, legs)
-                met_[own] = _Meeting(
+                met_[own] = Meeting(
                     robots, (first, second), (does, its), apart, met, things, around
                 )
             if is_touch and own == sides:
@@ -413,16 +426,16 @@ class Look:
         where = stands_at(self.cell.robot(leg.robot), leg.start)
         return f"stands at {where}" if where else "stands", ""
 
-    def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
+    def _reported(self, found: Situations, meetings: Iterable[Meeting]) -> list[Pair]:
         """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
         meetings = list(meetings)
-        first: dict[tuple[object, ...], _Meeting] = {}
+        first: dict[tuple[object, ...], Meeting] = {}
         for m in meetings:
             first.setdefault(m.told, m)
         touching = [m for m in first.values() if m.apart.outcome == "touch"]
         touching.sort(key=lambda m: m.apart.nearest)
         deepest = set({m.robots: m for m in reversed(touching)}.values())
-        depths: dict[_Meeting, Apart] = {}
+        depths: dict[Meeting, Apart] = {}
         begun = self.comparison.sweeper.queries
         for m in sorted(touching, key=lambda m: m not in deepest):
             asked = self.comparison.sweeper.queries - begun
@@ -437,7 +450,7 @@ class Look:
     def _parts(self, found: Situations) -> list[Pair]:
         """Arms, with what they carry, and parts that stand."""
         parts = found.parts() if found.beside else {}
-        bad: dict[tuple[str, str, str], _Meeting] = {}
+        bad = self.progress.parts
         more = HowFar(self.options.say, "sweeping parts that stand", total=len(found.beside))
         for (number, i, where), met in found.beside.items():
             more()
@@ -453,7 +466,7 @@ class Look:
             stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
             does = (words(leg.command), stands)
             around = around_of(found, met, [(leg, contents)])
-            bad[key] = _Meeting((leg.robot, ""), (t, ""), does, apart, met, around=around)
+            bad[key] = Meeting((leg.robot, ""), (t, ""), does, apart, met, around=around)
         return self._reported(found, bad.values())
 
     # --- words and runs --------------------------------------------------------------------------
@@ -467,13 +480,14 @@ class Look:
             self._numbered += 1
             layout = f"-{self.layout}" if self.layout else ""
             name = f"{self.options.stem}.geometry{layout}-{self._numbered}.trace.jsonl"
-            self.runs[key] = write(
-                found.graph,
-                found.path_to(met.situation),
-                [e for e in met.elements if e >= 0],
-                self.options.folder / name,
-                self.options.initial,
-            )
+            file = self.options.folder / name
+            under_way = [e for e in met.elements if e >= 0]
+            try:
+                path = found.path_to(met.situation)
+                self.runs[key] = write(found.graph, path, under_way, file, self.options.initial)
+            except OverError:
+                file.unlink(missing_ok=True)  # half of it is no run
+                raise
         return self.runs.get(key)
 
     def keep_runs(self, rows: Iterable[Move | Pair | Open]) -> None:
@@ -501,7 +515,7 @@ def _who(found: Situations, element: int) -> tuple[str, str]:
     return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
 
 
-def _met(meeting: _Meeting, apart: Apart, run: Run | None) -> Pair:
+def _met(meeting: Meeting, apart: Apart, run: Run | None) -> Pair:
     """Two things that do not surely keep apart; a part has no robot, and no joints."""
     is_touch = apart.outcome == "touch"
     says = touch_in_words(apart) if is_touch else as_in_runs(apart.why)

@@ -25,7 +25,7 @@ from pn2code.geometry.words import reason
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
-from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
 

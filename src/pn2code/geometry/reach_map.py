@@ -12,12 +12,13 @@ line must stay in one branch from its beginning to its end, in samples. Clearanc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
+from pn2code.base.how_far import counting
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import words
@@ -40,7 +41,7 @@ from pn2code.robot.transforms import Array, inverse, matrix_of
 _OF_ARM = (MoveHome, MoveAxes, MoveExternal)
 LINE_STEP = 0.05
 """m: samples of lines."""
-_AT_ONCE = 400_000
+_AT_ONCE = 50_000
 _DIGITS = 6
 
 
@@ -192,7 +193,7 @@ def reach_map(robot: CellRobot, task: Task, bases: Array) -> Map:
     """What the arm could do from each of them."""
     frames = np.repeat(robot.T_world_base[None], len(bases), axis=0)
     frames[:, :2, 3] = bases
-    found = judge(robot, task, frames)
+    found = judge(robot, task, frames, counting(f"moving {robot.name}", total=len(bases)))
     return Map(bases, found.reach, found.condition, found.limit)
 
 
@@ -212,11 +213,19 @@ class Judged:
     limit: Array
 
 
-def judge(robot: CellRobot, task: Task, T_world_base: Array) -> Judged:  # noqa: N803
-    """What the arm could do with its base at each of these frames, (n, 4, 4)."""
+def judge(
+    robot: CellRobot,
+    task: Task,
+    T_world_base: Array,  # noqa: N803
+    more: Callable[[int], None] = lambda _count: None,
+) -> Judged:
+    """What the arm could do with its base at each of these frames, (n, 4, 4); `more` is told how many more are done."""
     each = max(1, _AT_ONCE // max(1, len(task.poses) * len(robot.kinematics.branches)))
     starts = range(0, len(T_world_base), each)
-    parts = [_judged(robot, task, T_world_base[i : i + each]) for i in starts]
+    parts = []
+    for i in starts:
+        parts.append(_judged(robot, task, T_world_base[i : i + each]))
+        more(len(parts[-1].reach))
     columns = zip(*((p.reach, p.reached, p.condition, p.limit) for p in parts), strict=True)
     return Judged(*(np.concatenate(column) for column in columns))
 

@@ -26,9 +26,9 @@ from pn2code.geometry.apart import Apart, Found, Standing, spread_of
 from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, Own, gaps, near
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
-from pn2code.robot.active_motion import PATHS
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
+from pn2code.robot.gripped import MoveEnds
 from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags
 
@@ -115,18 +115,19 @@ class Sweeper:
         return np.array(rows)
 
     def _is_by_the_way(self, one: str, two: str, *near: Track | Standing) -> bool:
-        """Whether a tool that grips parts must keep apart from this one, to which its move does not lead."""
-        grip = self._backend.distances.grips.between(one, two)
-        if grip is None:
-            return False
-        robot, name = grip
-        track = next(x for x in near if isinstance(x, Track) and x.robot == robot)
-        if track.leg.kind not in PATHS:
-            return False
-        other, part = next((x, p) for x in near for p in x.parts if p.name == name)
+        """Whether a tool that grips parts, or a part in it, must keep apart from this one: its move leads elsewhere."""
+        tracks = {x.robot: x for x in near if isinstance(x, Track)}
+
+        def ends_of(name: str) -> MoveEnds | None:
+            return tracks[name].ends if name in tracks else None
+
         # What stands on a plate that moves may be touched by nobody else, so it stands where it was.
-        frame = other.place(part) if isinstance(other, Track) else part.frame
-        return not track.ends.is_at(part, frame, ROUNDING)
+        def stands(name: str) -> Array:
+            return tracks[name].leg.start.q
+
+        parts = {p.name: p for x in near for p in x.parts}
+        led = self._backend.distances.led
+        return led.is_by_the_way(one, two, ends_of, parts, stands, ROUNDING)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands; where they touch, the first overlap that is met."""

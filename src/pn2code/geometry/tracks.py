@@ -24,7 +24,7 @@ from pn2code.robot.active_motion import turned_by
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.part import Part, carried_to
+from pn2code.robot.part import Part
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory, Still
@@ -185,12 +185,9 @@ class Track:
         """Both ends of the leg, with the tool in use; they are worked out once."""
         if self._both is None:
             assert self.leg.path is not None
-            self._both = MoveEnds.of(self.shape.robot, self.leg.start.tool, self.leg.path)
+            leg = self.leg
+            self._both = MoveEnds.of(self.shape.robot, leg.start.tool, self.leg.path, leg.kind)
         return self._both
-
-    def place(self, part: Part) -> Array:
-        """`T_world_part` of a part that it carries, where the leg begins."""
-        return carried_to(self.shape.robot, self.leg.start.q, part)
 
     @property
     def trouble(self) -> str:

@@ -35,7 +35,7 @@ LAST_S = 2.0
 
 
 class Tap:
-    """An observer (`run.engine.Observer`).
+    """An observer (`run.observer.Observer`).
 
     Args:
         handing: where pictures go.

@@ -31,8 +31,8 @@ from pn2code.web.guard import new_token
 from pn2code.web.serving import listening, url
 
 if TYPE_CHECKING:
-    from pn2code.run.cell import Prepared
     from pn2code.run.engine import Engine
+    from pn2code.run.prepare import Prepared
 
 WHO = "the live page"
 _BUILDING_S = 20.0
@@ -49,7 +49,7 @@ def patience_of(reply_timeout_s: float) -> float:
 
 
 class LiveView(Closing):
-    """An observer of a run (`run.engine.Observer`) with a server.
+    """An observer of a run (`run.observer.Observer`) with a server.
 
     Args:
         port: of the page; 0 takes any that is free. `PortTaken` when it cannot be had.

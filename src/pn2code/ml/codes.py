@@ -240,6 +240,13 @@ UNSUPPORTED_BUILTIN = register(
     "usual; a run stops where the function is applied, and `generate` refuses the net. To replace it, declare a "
     "function of the same name.",
 )
+INSTANCE_AT_OPENING = register(
+    "declaration-instance",
+    "a declaration asks for the number of the page instance",
+    "Constants, references and the bounds of colour sets are computed when the net is opened. No page instance is "
+    "looked at then, and `inst ()` is 1, in CPN Tools and here. There it is another number when the declaration is "
+    "checked again after a change: that of the instance that was looked at last.",
+)
 UNSUPPORTED_COLSET = register(
     "unsupported-colour-set",
     "a kind of colour set is not supported",

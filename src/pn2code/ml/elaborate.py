@@ -14,55 +14,35 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pn2code.base.frozen import record
 from pn2code.base.weakly import weakly
 from pn2code.diagnostics import Diagnostics, Origin, Severity, SourceText
 from pn2code.ml import codes, library
+from pn2code.ml.aside import Aside
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.computing import Compute, Computed, Computing
 from pn2code.ml.core.constants import Constant, fold
 from pn2code.ml.core.terms import Program, Symbol
 from pn2code.ml.core.types import STRING, Type
+from pn2code.ml.inscription_texts import InscriptionTexts
 from pn2code.ml.library.builtins import INFIX
 from pn2code.ml.parsing import syntax as s
-from pn2code.ml.parsing.fixity import (
-    Fixities,
-    resolve_declaration,
-    resolve_expression,
-    resolve_pattern,
-)
-from pn2code.ml.parsing.parser import (
-    declared_names,
-    is_layered,
-    parse_expression,
-    parse_layered,
-    parse_program,
-)
+from pn2code.ml.parsing.fixity import Fixities, resolve_declaration, resolve_expression
+from pn2code.ml.parsing.parser import declared_names, is_layered, parse_expression, parse_program
 from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.border import at_border
 from pn2code.ml.typing.code_segments import CodeSegments, TypedCode
-from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
+from pn2code.ml.typing.colset_specs import Colsets
 from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.declarations import Declarations
-from pn2code.ml.typing.declared import (
-    break_modules,
-    declared_by,
-    types_declared_by,
-)
-from pn2code.ml.typing.environment import (
-    Binding,
-    BrokenEntry,
-    BrokenType,
-    Scope,
-    library_scope,
-)
+from pn2code.ml.typing.declared import break_modules, declared_by, types_declared_by
+from pn2code.ml.typing.environment import Binding, BrokenEntry, BrokenType, Scope, library_scope
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.given_values import GivenValues
 from pn2code.ml.typing.inscriptions import Inscriptions
@@ -72,6 +52,7 @@ from pn2code.ml.typing.patterns import Patterns
 from pn2code.ml.typing.repeats import Repeats
 from pn2code.ml.typing.used_files import UsedFiles, used_by
 from pn2code.ml.typing.variables import Variables
+from pn2code.ml.typing.written_colset import ColsetSpec
 
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 
@@ -91,20 +72,7 @@ def _of_library(name: str) -> tuple[SourceText, tuple[s.Dec, ...]]:
     return text, parse_program(text, Diagnostics()) or ()
 
 
-@record
-class Aside:
-    """What was declared beside a net; complete when its block has ended.
-
-    Args:
-        declarations: in order of evaluation, after those of the net.
-        globals: the symbols of all names in scope at the end, those of the net included.
-    """
-
-    declarations: tuple[core.Dec, ...] = ()
-    globals: dict[str, Symbol] = field(default_factory=dict)
-
-
-class Elaborator:
+class Elaborator(InscriptionTexts):
     """Checks the declarations of one net in order, then its inscriptions.
 
     Args:
@@ -153,6 +121,7 @@ class Elaborator:
         )
         self._code_segments = CodeSegments(self._ctx, self._expressions, self._variables.scope)
         self._repeats = Repeats()
+        self._beside = 0
         self._library: set[str] = set()
         self._from_library: set[str] = set()
         self._colsets = Colsets(self._ctx, self._declare, weakly(self._plain), weakly(self._fold))
@@ -260,7 +229,8 @@ class Elaborator:
         self._ctx.tainted = False
         asks = self._instances.asks(changed)
         before_it = dict(self._ctx.top.values) if asks else {}
-        with self._instances.on_page(asks):
+        computes = not asks and not self._beside and self._instances.may_ask(changed)
+        with self._instances.on_page(asks or computes):
             build = self._declare.declare(changed)
         if self._ctx.errors == before and not self._ctx.tainted:
             self._ctx.resolve_pending()
@@ -280,6 +250,12 @@ class Elaborator:
         self._variables.meet(declared_by(changed), dec.span)
         self._variables.hide(declared_by(changed), dec.span)
         made = build()
+        if computes:
+            made = self._instances.at_opening(made, self._made)
+            if self._ctx.errors > before:
+                self._break(declared_by(changed), types_declared_by(changed))
+                break_modules(changed, self._ctx.top)
+                return
         if not asks:
             self._made += made
         for weak in self._ctx.weak:
@@ -395,9 +371,11 @@ class Elaborator:
         before = self._d, self._ctx.d, self._ctx.errors
         result = Aside()
         self._d = self._ctx.d = d
+        self._beside += 1
         try:
             yield result
         finally:
+            self._beside -= 1
             result.declarations = tuple(self._made[made:])
             result.globals = {
                 n: e.symbol
@@ -411,96 +389,7 @@ class Elaborator:
             self._fixities, (self._library, self._from_library) = fixities, declared
             self._repeats.clear()
 
-    # --- inscriptions
-
-    def expression(
-        self,
-        text: SourceText,
-        types: Sequence[Type],
-        *,
-        expected_name: str,
-        declared: Mapping[str, Symbol] | None = None,
-        output: bool = False,
-    ) -> tuple[int, core.Exp] | None:
-        """An inscription or initial marking.
-
-        Args:
-            text: the text.
-            types: tried in this order; a `timed_of(t)` stands for the form `v @+ d` (one timed token).
-            expected_name: name of the place's colour set, for messages.
-            declared: further names in scope.
-            output: an OUTPUT arc: everything before the first `@+` is one operand (the real tool's rule).
-
-        Returns:
-            The index of the first type that fits and the expression; None when an error was reported (one
-            diagnostic), or when the text uses something whose declaration has an error.
-        """
-
-        def work() -> tuple[int, core.Exp] | None:
-            exp = self._parse(text, output=output)
-            if exp is None:
-                return None
-            return self._inscriptions.expression(text, exp, types, expected_name, declared or {})
-
-        if declared:
-            return self._border(text, work)
-        key = (text.text, text.origin.part, tuple(types), expected_name, output)
-        return self._once(key, text, work)
-
-    def fits(self, text: SourceText, t: Type, expected_name: str) -> bool:
-        """Whether an initial marking that is well-typed could have this type as well: `empty` fits any multi-set."""
-        exp = self._parse(text)
-        quiet, self._ctx.d = self._ctx.d, Diagnostics()
-        errors = self._ctx.errors
-        try:
-            return exp is not None and (
-                self._inscriptions.expression(text, exp, [t], expected_name, {}) is not None
-            )
-        finally:
-            self._ctx.d = quiet
-            self._ctx.errors = errors
-
-    def layered(self, text: SourceText, t: Type) -> tuple[core.Exp, core.Pat, core.Exp] | None:
-        """`x as pattern` on an input arc: the token x, the pattern that binds, and the condition that x matches it.
-
-        Only for texts that `is_layered`; None when an error was reported.
-        """
-
-        def work() -> tuple[core.Exp, core.Pat, core.Exp] | None:
-            parsed = parse_layered(text, self._d)
-            if parsed is None:
-                return None
-            name = resolve_expression(parsed[0], self._fixities, self._d)
-            pattern = resolve_pattern(parsed[1], self._fixities, self._d)
-            if name is None or pattern is None:
-                return None
-            return self._inscriptions.layered(name, pattern, t)
-
-        return self._border(text, work)
-
-    def guard(self, text: SourceText) -> tuple[core.Exp, ...] | None:
-        """`[g1, g2]`, `g1, g2` or one expression -> conjuncts of type bool; empty or `[]` -> ()."""
-        key = (text.text, "guard")
-        return self._once(key, text, lambda: self._inscriptions.guard(text, self._fixities))
-
-    def code_segment(self, text: SourceText) -> TypedCode | None:
-        """`input (..); output (..); action exp;`."""
-        return self._border(text, lambda: self._code_segments.code_segment(text, self._fixities))
-
-    def delay(self, text: SourceText, real_time: bool = False) -> core.Exp | None:
-        """`@+ e` (int; the type is int) or `@++ t` (the type is IntInf.int or real): the delay expression."""
-        del real_time  # the clock is known from the beginning
-
-        def work() -> tuple[core.Exp] | None:
-            made = self._inscriptions.delay(text, self._fixities)
-            return None if made is None else (made,)
-
-        found = self._once((text.text, "delay"), text, work)
-        return None if found is None else found[0]
-
-    def priority(self, text: SourceText) -> int | None:
-        """The constant value of a priority inscription."""
-        return self._border(text, lambda: self._inscriptions.priority(text, self._fixities))
+    # --- symbols
 
     def symbol(self, name: str, t: Type) -> Symbol:
         """A new symbol, which no text can mention by its name unless it is declared for it."""
@@ -509,40 +398,6 @@ class Elaborator:
     def another(self, symbol: Symbol) -> Symbol:
         """A symbol that differs from this one, and is like it in all else."""
         return replace(symbol, uid=self._ctx.fresh_symbol(symbol.name, symbol.type).uid)
-
-    def condition(
-        self,
-        text: SourceText,
-        prepare: Callable[[s.Exp], tuple[s.Exp, Mapping[str, Symbol]] | None],
-    ) -> core.Exp | None:
-        """A condition that does not belong to the net, as of a property; the variables of the net are not in scope.
-
-        Args:
-            text: the text.
-            prepare: changes the syntax tree, operators resolved, before it is typed, and says which further names are
-                in scope; None after an error.
-        """
-
-        def work() -> core.Exp | None:
-            parsed = self._parse(text)
-            prepared = None if parsed is None else prepare(parsed)
-            return None if prepared is None else self._inscriptions.condition(*prepared)
-
-        return self._border(text, work)
-
-    def evaluation(
-        self,
-        text: SourceText,
-        prepare: Callable[[s.Exp], tuple[s.Exp, Mapping[str, Symbol]] | None],
-    ) -> tuple[core.Exp, Type] | None:
-        """An expression of any type that does not belong to the net, and its type; otherwise as `condition`."""
-
-        def work() -> tuple[core.Exp, Type] | None:
-            parsed = self._parse(text)
-            prepared = None if parsed is None else prepare(parsed)
-            return None if prepared is None else self._inscriptions.any(*prepared)
-
-        return self._border(text, work)
 
     # --- helpers
 
@@ -557,7 +412,12 @@ class Elaborator:
 
         def work() -> tuple[int, core.Exp] | None:
             exp = self._parse(text)
-            return None if exp is None else self._inscriptions.plain(exp, types, what)
+            if exp is None:
+                return None
+            before = self._ctx.errors
+            found = self._inscriptions.plain(exp, types, what, on_page=True)
+            bound = None if found is None else (found[0], self._instances.bound(found[1]))
+            return bound if self._ctx.errors == before else None
 
         return self._border(text, work)
 

@@ -34,7 +34,7 @@ from pn2code.net.flat import (
     Form,
 )
 from pn2code.semantics.evaluation.effects import Effect, Effects
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 
 
 @frozen

@@ -16,7 +16,7 @@ from pn2code.ml.core.types import TCon, TFun, TRecord, Type
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.effects import Effect, Effects
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 
 
 def shared_references(program: MonitorProgram, net: FlatNet) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from pn2code.net.codes import (
     BINDING_CIRCLE,
     CODE_OUTPUT_BOUND,
     ENGINE_CODE,
+    ENGINE_FIELDS,
     ENGINE_ORDER,
     GUARD_REPEATS,
     LOCAL_NAME,
@@ -33,6 +34,7 @@ from pn2code.net.codes import (
 )
 from pn2code.net.engine_binding import Answer, PlaceNode, TakingArc, examine
 from pn2code.net.engine_code import loses_parentheses
+from pn2code.net.engine_fields import misplaced
 from pn2code.net.engine_parts import PartReader, has_long_delay
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
@@ -182,10 +184,11 @@ class Planner:
         ]
         if any(self.is_layered(t) for arc in arcs for t in arc.inscription.terms):
             return True
+        reader = PartReader(self.variables, self.terms)
+        self.warn_of_fields(parts, arcs, reader)
         if not parts.written and self.is_evident(arcs):
             self.warn_of_code(parts, arcs)
             return True
-        reader = PartReader(self.variables, self.terms)
         answer = examine(arcs, parts.guards[: parts.written], reader, self.is_small)
         if answer.parted is not None:
             later, earlier = (arcs[i].inscription.origin for i in answer.parted)
@@ -227,6 +230,20 @@ class Planner:
                 arcs[i].inscription.origin,
                 notes=[Note(HERE, parts.origin)],
                 hint="put a variable there, and give it this value in the guard: `v = ...`",
+            )
+
+    def warn_of_fields(self, parts: Parts, arcs: Sequence[TakingArc], reader: PartReader) -> None:
+        """Of arcs of which CPN Tools may miss tokens."""
+        guards = parts.guards[: parts.written]
+        for i, names in misplaced(arcs, guards, reader, self.variables):
+            declared = ", ".join(f"{name} = .." for name in arcs[i].node.fields)
+            self.d.warning(
+                ENGINE_FIELDS,
+                f"CPN Tools may miss tokens for transition `{parts.name}`: this arc has the fields in another order "
+                f"than the colour set, and {' and '.join(f'`{name}`' for name in names)} may be known before",
+                arcs[i].inscription.origin,
+                notes=[Note(HERE, parts.origin)],
+                hint=f"write them in its order: {{{declared}}}",
             )
 
     def is_evident(self, arcs: Sequence[TakingArc]) -> bool:

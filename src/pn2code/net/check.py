@@ -17,7 +17,7 @@ from pn2code.ml.core.computing import Compute
 from pn2code.ml.core.terms import Exp, Lit
 from pn2code.ml.core.types import INT
 from pn2code.ml.elaborate import Elaborator, is_layered
-from pn2code.ml.parsing.parser import odd_declaration
+from pn2code.ml.parsing.parser import odd_declaration, opens
 from pn2code.net import (
     engine_guards,
     initial_effects,
@@ -35,6 +35,7 @@ from pn2code.net.codes import (
 )
 from pn2code.net.declare import Declaring, declared_in
 from pn2code.net.engine_binding import PlaceNode
+from pn2code.net.engine_fields import fields
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
 from pn2code.net.forms import (
     ARC_TIMED,
@@ -229,6 +230,7 @@ class _Checker:
         initial: tuple[Exp, Form] | None = None
         if text is not None:
             initial = typed_marking(self.elaborator, text, colset)
+            self.warn_of_opening(text)
         takes_stamps = text is None
         if text is not None and initial is not None and colset.timed and place.fusion:
             stamped = form_type(Form.TIMED_MULTISET, colset.type)
@@ -321,7 +323,9 @@ class _Checker:
     def node(arc: TypedArc, colsets: Mapping[str, Colset | None]) -> PlaceNode:
         """The place of an arc."""
         colset = colsets[arc.place]
-        return PlaceNode(arc.place, colset is not None and colset.timed)
+        return PlaceNode(
+            arc.place, colset is not None and colset.timed, () if colset is None else fields(colset)
+        )
 
     def warn_of_declarations(self, t: Transition) -> None:
         """Warn of inscriptions that keep CPN Tools from checking the page."""
@@ -329,12 +333,27 @@ class _Checker:
         for text in (i.text for i in inscriptions if i is not None and not self.is_pnml):
             word = odd_declaration(text)
             if word:
-                self.d.warning(
-                    DECLARATION_INSIDE,
-                    f"CPN Tools cannot check a page with `{word}` in an inscription like this {text.origin.part}",
-                    text.span(),
-                    hint="declare it in the net, or write it with `val`",
+                self.warn_of_declaration(
+                    word, text, "declare it in the net, or write it with `val`"
                 )
+        for part in (t.code, t.delay):
+            if part is not None:
+                self.warn_of_opening(part.text)
+
+    def warn_of_opening(self, text: SourceText) -> None:
+        """Warn of `open` where CPN Tools permits all other declarations."""
+        if opens(text) and not self.is_pnml:
+            self.warn_of_declaration(
+                "open", text, "write the names of the structure in full: `Int.abs`"
+            )
+
+    def warn_of_declaration(self, word: str, text: SourceText, hint: str) -> None:
+        self.d.warning(
+            DECLARATION_INSIDE,
+            f"CPN Tools cannot check a page with `{word}` in an inscription like this {text.origin.part}",
+            text.span(),
+            hint=hint,
+        )
 
     def arc(self, arc: Arc, place: Place, colset: Colset) -> TypedArc | None:
         if arc.kind in (ArcKind.INHIBITOR, ArcKind.RESET):

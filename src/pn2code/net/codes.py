@@ -205,8 +205,8 @@ DECLARATION_INSIDE = register(
     "an inscription declares something other than a value",
     "CPN Tools looks for the variables of an arc inscription, a guard or a priority by itself, and of declarations it "
     "knows `val` only: at `let fun f x = x + 1 in f n end` it ends with `InternalError: Illegal FunDec`, and the page "
-    "cannot be checked. In declarations, code segments, time inscriptions of transitions and initial markings all "
-    "declarations are possible.",
+    "cannot be checked. In code segments, time inscriptions of transitions and initial markings all declarations but "
+    "`open` are possible: there it ends with `Uncaught Exception: Compile`.",
 )
 LOCAL_NAME = register(
     "local-name-of-variable",
@@ -280,6 +280,16 @@ ENGINE_CODE = register(
     "else. From a place with a clock it does so with a single arc, too, if the coefficient is not 1: 2`(n + 1). It "
     "accepts the net, and says so only when it is to be simulated. pn2code takes what is written.",
 )
+ENGINE_FIELDS = register(
+    "engine-field-order",
+    "CPN Tools may miss tokens, because the fields of a record are written in another order",
+    "Where a component of a record or tuple is known before a token is looked for (a constant, or a variable that an "
+    "equation of the guard or another arc gives a value), CPN Tools searches for tokens with that component. If the "
+    "arc has the fields in another order than the colour set, {b = j, a = i} with colset R = record a : INT * b : INT, "
+    "it takes one component for another: it finds none or some of the tokens, also in state spaces, or it cannot "
+    "compile the code that it makes. pn2code finds all of them. Written in the order of the colour set both find the "
+    "same.",
+)
 INITIAL_EFFECT = register(
     "initial-marking-effect",
     "an initial marking changes a reference",
@@ -291,8 +301,9 @@ INITIAL_INSTANCE = register(
     "initial-marking-instance",
     "an initial marking uses the number of the page instance",
     "In arcs, guards, delays and code segments `inst ()` is the number of the page instance. When CPN Tools makes the "
-    "initial marking it has another value, the same for all instances of a page: mostly their number and 1. In pn2code "
-    "it is the number of the instance there, too.",
+    "initial marking it has another value, the same for all instances of a page: 1 more than the number of instances "
+    "of the page of the place that it made before, in an order that depends on how the net was opened and changed. In "
+    "pn2code it is the number of the instance there, too.",
 )
 SPACE_NAME = register(
     "state-space-name",

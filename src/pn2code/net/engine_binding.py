@@ -27,10 +27,11 @@ Kind = Literal["", "stuck", "large", "undecided", "tables", "repeats"]
 
 @frozen
 class PlaceNode:
-    """A place as it is drawn: its id, and whether its tokens have time stamps."""
+    """A place as it is drawn: its id, whether its tokens have time stamps, their fields as its colour set has them."""
 
     id: str
     timed: bool
+    fields: tuple[str, ...] = ()
 
 
 @frozen

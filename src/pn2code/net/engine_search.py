@@ -17,8 +17,8 @@ open". The steps:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.engine_tables import BrokenError, Group, Leaf, Name, Tables
 
@@ -46,7 +46,7 @@ class LargeError(Exception):
         self.name = name
 
 
-@dataclass(frozen=True)
+@frozen
 class _Step:
     needs: int
     gives: int
@@ -58,7 +58,7 @@ class _Step:
         return not self.gives & ~self.needs
 
 
-@dataclass(frozen=True)
+@frozen
 class _Lookup:
     """A summand whose tokens are found by their known components; `keys`: the components that may be known.
 

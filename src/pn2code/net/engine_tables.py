@@ -13,8 +13,9 @@ from it, whatever its variables are; and there the tables break:
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen, record
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.engine_parts import Item, Seen, Summand
 
@@ -26,7 +27,7 @@ class BrokenError(Exception):
     """CPN Tools' check of the page ends with an internal error, which is the message."""
 
 
-@dataclass
+@record
 class Known:
     """A variable in a group: its number there, how many expressions have it, whether something may bind it."""
 
@@ -36,7 +37,7 @@ class Known:
     bindable: bool = False
 
 
-@dataclass(frozen=True)
+@frozen
 class Leaf:
     """A summand with its names."""
 
@@ -51,7 +52,7 @@ class Leaf:
         return tuple(n for entry in self.entries for n in entry)
 
 
-@dataclass
+@record
 class ArcExpression:
     """What is taken from a place, by one arc or several."""
 
@@ -60,7 +61,7 @@ class ArcExpression:
     is_sum: bool
 
 
-@dataclass(frozen=True)
+@frozen
 class Condition:
     """A condition: two sides with their names, and whether each is a pattern; one that only tests has none."""
 
@@ -68,7 +69,7 @@ class Condition:
     sides: tuple[tuple[tuple[Name, ...], bool], ...] = ()
 
 
-@dataclass
+@record
 class Group:
     """A group of variables, arcs and conditions."""
 

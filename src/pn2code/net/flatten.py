@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 from pn2code.base.frozen import replace
 from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.ml.core.instances import numbered
 from pn2code.net.codes import FUSION_MISMATCH, NET_TOO_LARGE, PORT_COLSET, PORT_INITIAL
 from pn2code.net.flat import (
     FlatArc,
@@ -27,7 +28,6 @@ from pn2code.net.flat import (
     Form,
     PlaceInstance,
 )
-from pn2code.net.instance_numbers import numbered
 from pn2code.net.instances import PageInstance, expand, measure, unique_names
 from pn2code.net.typed import TypedNet, TypedPlace, TypedTransition
 

@@ -213,6 +213,7 @@ def _leap(session: Session, wish: Wish, tell: Tell) -> Ended:
         if outcome.why == "replay" or outcome.final is None or outcome.steps < steps:
             raise Trouble(f"the compiled simulator does not repeat the run: {outcome.refusal}")
         count = outcome.steps - steps
+        tell(count, outcome.final.time)  # reading them takes a while, too
         moved = outcome.final.time != session.game.marking.time
         if count or moved:
             lines, written = leap_lines(after, steps) if is_traced else ([], 0)

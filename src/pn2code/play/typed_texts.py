@@ -15,13 +15,13 @@ from typing import TypeVar
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostic, Diagnostics, Origin, SourceText
+from pn2code.ml.core.instances import numbered
 from pn2code.ml.core.terms import Exp
 from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net import generative
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition, Form
 from pn2code.net.forms import typed_marking
-from pn2code.net.instance_numbers import numbered
 from pn2code.properties.marks import Looks, Marks
 from pn2code.properties.names import Names
 

@@ -11,41 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.pnml.codes import PNML_ELEMENT, PNML_SORT, UNSUPPORTED_PNML
 from pn2code.pnml.declarations import Declarations, number
 from pn2code.pnml.sorts import BOOL, DOT, INTEGER, Sort, SortKind
+from pn2code.pnml.term import Code, Term, TermError, closed, joined, operand, summand, text_of_term
 from pn2code.reading.xml import Node
-
-Code = tuple[tuple[str, Node], ...]
-"""Pieces of text with the elements that they came from."""
-
-
-@frozen
-class Term:
-    """A term.
-
-    Args:
-        code: its text.
-        sort: of the value, or of the elements of the multi-set; None for `empty` and numbers of any sort.
-        many: whether it is a multi-set.
-        atomic: whether the text needs no parentheses.
-        most: of a multi-set `n ** CS.all()`: how many of each value there are; else 0.
-        count: of a multi-set of n times one value: n; else 0.
-    """
-
-    code: Code
-    sort: Sort | None
-    many: bool = False
-    atomic: bool = True
-    most: int = 0
-    count: int = 0
-
-
-class TermError(Exception):
-    """A term cannot be translated; it has been reported."""
-
 
 _COMPARISONS = {
     "equality": "=", "inequality": "<>", "lessthan": "<", "lessthanorequal": "<=", "greaterthan": ">",
@@ -90,7 +61,7 @@ class Terms:
             found = [self._bool(part) for part in parts]
         except TermError:
             return None
-        return self._source(_joined(", ", [t.code for t in found], node))
+        return self._source(joined(", ", [t.code for t in found], node))
 
     def _source(self, code: Code) -> SourceText:
         """The text with the position of each piece."""
@@ -144,7 +115,7 @@ class Terms:
             )
         if term.many:
             return term
-        return Term((("1`", node), *_closed(term, node)), term.sort, True, False, count=1)
+        return Term((("1`", node), *closed(term, node)), term.sort, True, False, count=1)
 
     def _one(self, node: Node, sort: Sort | None = None) -> Term:
         """A term that is one value, of a sort if one is given."""
@@ -254,7 +225,7 @@ class Terms:
         if not members:
             return None
         return Term(
-            _joined(" ++ ", [((f"1`{m}", node),) for m in members], node), wanted, True, False
+            joined(" ++ ", [((f"1`{m}", node),) for m in members], node), wanted, True, False
         )
 
     def _dot(self, node: Node, sort: Sort | None) -> Term:
@@ -295,7 +266,7 @@ class Terms:
         if term.sort is None or not (term.sort.is_listed or term.sort.kind is SortKind.RANGE):
             raise self._wanted("an element of an enumeration", term, argument, "it needs an order")
         name = self.declarations.step(term.sort, 1 if node.tag == "successor" else -1, node)
-        return Term(((name + " ", node), *_closed(term, argument)), term.sort, atomic=False)
+        return Term(((name + " ", node), *closed(term, argument)), term.sort, atomic=False)
 
     def _tuple(self, node: Node, sort: Sort | None) -> Term:
         arguments = self._arguments(node, 1)
@@ -321,14 +292,14 @@ class Terms:
                 raise self.fail(PNML_SORT, "a multi-set is not allowed here", node, "use one value")
             # The product of the components' multi-sets.
             many = [self._many(t, a, None).code for t, a in zip(terms, arguments, strict=True)]
-            code = ((f"{sort.name}.mult (", node), *_joined(", ", many, node), (")", node))
+            code = ((f"{sort.name}.mult (", node), *joined(", ", many, node), (")", node))
             return Term(code, sort, True, False)
         made = sort
         if made is None:
             known = tuple(t.sort for t in terms if t.sort is not None)
             shown = " * ".join(s.shown for s in known)
             made = Sort("", shown, SortKind.PRODUCT, parts=known)
-        code = (("(", node), *_joined(", ", [t.code for t in terms], node), (")", node))
+        code = (("(", node), *joined(", ", [t.code for t in terms], node), (")", node))
         return Term(code, made)
 
     def _comparison(self, node: Node, sort: Sort | None) -> Term:
@@ -344,7 +315,7 @@ class Terms:
                 "compare values of the same sort",
             )
         sign = _COMPARISONS[node.tag]
-        codes = [_closed(a, left), _closed(b, right)]
+        codes = [closed(a, left), closed(b, right)]
         if sign not in ("=", "<>") and a.sort is not None and not a.sort.is_number:
             if not a.sort.is_listed:
                 raise self._wanted(
@@ -355,27 +326,27 @@ class Terms:
                 )
             name = a.sort.name
             codes = [((f"{name}.ord ", node), *c) for c in codes]
-        return Term(_joined(f" {sign} ", codes, node), BOOL, atomic=False)
+        return Term(joined(f" {sign} ", codes, node), BOOL, atomic=False)
 
     def _logic(self, node: Node, sort: Sort | None) -> Term:
-        parts = [_closed(self._bool(a), a) for a in self._operands(node)]
+        parts = [closed(self._bool(a), a) for a in self._operands(node)]
         word = " andalso " if node.tag == "and" else " orelse "
-        return Term(_joined(word, parts, node), BOOL, atomic=False)
+        return Term(joined(word, parts, node), BOOL, atomic=False)
 
     def _imply(self, node: Node, sort: Sort | None) -> Term:
         a, b = (self._bool(x) for x in self._arguments(node, 2, 2))
-        code = (("not ", node), *_closed(a, node), (" orelse ", node), *_closed(b, node))
+        code = (("not ", node), *closed(a, node), (" orelse ", node), *closed(b, node))
         return Term(code, BOOL, atomic=False)
 
     def _not(self, node: Node, sort: Sort | None) -> Term:
         (argument,) = self._arguments(node, 1, 1)
-        code = (("not ", node), *_closed(self._bool(argument), argument))
+        code = (("not ", node), *closed(self._bool(argument), argument))
         return Term(code, BOOL, atomic=False)
 
     def _arithmetic(self, node: Node, sort: Sort | None) -> Term:
         arguments = self._arguments(node, 1 if node.tag in ("addition", "subtraction") else 2)
-        parts = [_closed(self._number(a), a) for a in arguments]
-        code = _joined(f" {_ARITHMETIC[node.tag]} ", parts, node)
+        parts = [closed(self._number(a), a) for a in arguments]
+        code = joined(f" {_ARITHMETIC[node.tag]} ", parts, node)
         return Term(code, INTEGER, atomic=False)
 
     def _part(self, node: Node, sort: Sort | None) -> Term:
@@ -384,7 +355,7 @@ class Terms:
         if found is None:
             raise TermError
         term = self._one(argument, found[1].parts[0])
-        return Term(((found[0] + " ", node), *_closed(term, argument)), found[1], atomic=False)
+        return Term(((found[0] + " ", node), *closed(term, argument)), found[1], atomic=False)
 
     # --- multi-sets ------------------------------------------------------------------------------
 
@@ -393,22 +364,24 @@ class Terms:
         counted = arguments[-1]
         term = self._term(counted, sort)
         count = self._number(arguments[0]) if len(arguments) == 2 else Term((("1", node),), None)
-        if not _text(count).strip("0"):  # CPN Tools would want a token, to bind what is in it
+        if not text_of_term(count).strip(
+            "0"
+        ):  # CPN Tools would want a token, to bind what is in it
             return self._times(count, arguments[0], self._many(term, counted, None), counted, node)
         if not term.many:
-            code = (*_closed(count, arguments[0]), ("`", node), *_closed(term, counted))
-            digits = _text(count)
+            code = (*closed(count, arguments[0]), ("`", node), *closed(term, counted))
+            digits = text_of_term(count)
             written = int(digits) if digits.isdigit() else 0
             return Term(code, term.sort, True, False, count=written)
         return self._times(count, arguments[0], term, counted, node)
 
     def _times(self, count: Term, at: Node, term: Term, counted: Node, node: Node) -> Term:
         """A multi-set several times."""
-        digits = _text(count)
+        digits = text_of_term(count)
         if digits == "1":
             return term
         most = term.most * int(digits) if digits.isdigit() else 0
-        code = (*_closed(count, at), (" ** ", node), *_operand(term, counted))
+        code = (*closed(count, at), (" ** ", node), *operand(term, counted))
         return Term(code, term.sort, True, False, most)
 
     def _scalar(self, node: Node, sort: Sort | None) -> Term:
@@ -439,9 +412,7 @@ class Terms:
         terms = [self._many(self._term(a, sort), a, sort) for a in arguments]
         if len(terms) == 1:
             return terms[0]
-        code = _joined(
-            " ++ ", [_summand(t, a) for t, a in zip(terms, arguments, strict=True)], node
-        )
+        code = joined(" ++ ", [summand(t, a) for t, a in zip(terms, arguments, strict=True)], node)
         return Term(code, next((t.sort for t in terms if t.sort is not None), sort), True, False)
 
     def _subtract(self, node: Node, sort: Sort | None) -> Term:
@@ -450,7 +421,7 @@ class Terms:
         for other in others:
             term = self._many(self._term(other, sort), other, sort)
             if 0 < term.count <= result.most:  # one value is taken from all of them: it is there
-                code = (*result.code, (" -- ", node), *_operand(term, other))
+                code = (*result.code, (" -- ", node), *operand(term, other))
                 result = Term(code, result.sort, True, False)
             else:
                 name = self.declarations.minus(node)
@@ -461,7 +432,7 @@ class Terms:
     def _cardinality(self, node: Node, sort: Sort | None) -> Term:
         (argument,) = self._arguments(node, 1, 1)
         term = self._many(self._term(argument, None), argument, None)
-        return Term((("size ", node), *_closed(term, argument)), INTEGER, atomic=False)
+        return Term((("size ", node), *closed(term, argument)), INTEGER, atomic=False)
 
     def _cardinality_of(self, node: Node, sort: Sort | None) -> Term:
         whole, value = self._arguments(node, 2, 2)
@@ -472,7 +443,7 @@ class Terms:
     def _contains(self, node: Node, sort: Sort | None) -> Term:
         left, right = self._arguments(node, 2, 2)
         a, b = (self._many(self._term(x, None), x, None) for x in (left, right))
-        code = (*_closed(a, left), (" >>= ", node), *_closed(b, right))
+        code = (*closed(a, left), (" >>= ", node), *closed(b, right))
         return Term(code, BOOL, atomic=False)
 
 
@@ -503,32 +474,3 @@ _OPERATORS: dict[str, Callable[[Terms, Node, Sort | None], Term]] = {
     "cardinalityof": Terms._cardinality_of,
     "contains": Terms._contains,
 }
-
-
-def _joined(separator: str, codes: list[Code], node: Node) -> Code:
-    pieces: list[tuple[str, Node]] = []
-    for i, code in enumerate(codes):
-        if i:
-            pieces.append((separator, node))
-        pieces.extend(code)
-    return tuple(pieces)
-
-
-def _closed(term: Term, node: Node) -> Code:
-    """The text of a term, in parentheses where it needs them."""
-    return term.code if term.atomic else (("(", node), *term.code, (")", node))
-
-
-def _operand(term: Term, node: Node) -> Code:
-    """A multi-set as an operand: only sums and differences need parentheses."""
-    text = _text(term)
-    return _closed(term, node) if " ++ " in text or " -- " in text else term.code
-
-
-def _summand(term: Term, node: Node) -> Code:
-    """A multi-set in a sum: sums stand as they are, so that patterns stay visible."""
-    return _closed(term, node) if " -- " in _text(term) else term.code
-
-
-def _text(term: Term) -> str:
-    return "".join(text for text, _ in term.code)

@@ -421,7 +421,7 @@ def _inside(f: t.Formula) -> list[t.Formula]:
 
 def _size(symbol: core.Symbol, marking: Type, span: Span) -> core.Exp:
     """`List.length`, whatever the net means by this name."""
-    token = marking.args[0]  # type: ignore[union-attr]
+    token = marking.args[0]  # type: ignore[union-attr]  # a marking is a list
     function = core.Builtin("List.length", TFun(marking, INT), span, (token,))
     return core.Apply(function, core.Var(symbol, marking, span), INT, span)
 

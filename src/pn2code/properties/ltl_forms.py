@@ -82,7 +82,7 @@ class Forms:
         form = self.forms[number]
         if form[: len(wanted)] != wanted:
             return None
-        return form[1], form[2]  # type: ignore[return-value]
+        return form[1], form[2]  # type: ignore[return-value]  # operators with two operands
 
     def _and(self, a: int, b: int) -> int:
         if a == b or b == TRUE:
@@ -131,7 +131,7 @@ class Forms:
         """Whether it holds at all nodes of a path or at none: `G F p`, `F G p`, and what is made of these."""
         form = self.forms[number]
         if form[0] in ("and", "or"):
-            return all(self._lasts(x) for x in form[1:])  # type: ignore[arg-type]
+            return all(self._lasts(x) for x in form[1:])  # type: ignore[arg-type]  # the others are numbers of forms
         always, finally_ = self._parts(number, "R", FALSE), self._parts(number, "U", TRUE)
         if always is not None:
             return self.forms[always[1]][:2] == ("U", TRUE)

@@ -139,4 +139,4 @@ def _rewritten(node: Any, change: Callable[[Any], Any]) -> Any:
         other = _rewritten(own, change)
         if other is not own:
             parts[f.name] = other
-    return replace(node, **parts) if parts else node  # type: ignore[type-var]
+    return replace(node, **parts) if parts else node  # type: ignore[type-var]  # terms are dataclasses

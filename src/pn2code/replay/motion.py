@@ -43,7 +43,7 @@ class _Path:
 
 
 class Motion:
-    """An observer of a run (`run.engine.Observer`)."""
+    """An observer of a run (`run.observer.Observer`)."""
 
     def __init__(self) -> None:
         self._paths: dict[str, _Path] = {}

@@ -15,8 +15,8 @@ from pn2code.replay.motion import Motion
 from pn2code.replay.trace import follow
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import inverse, matrix_of
-from pn2code.run.cell import RunResult
 from pn2code.run.record import NEAR, RunRecord
+from pn2code.run.results import RunResult
 
 
 def describe(result: RunResult, motion: Motion, document: Document) -> Json:

@@ -10,7 +10,7 @@ from typing import Any
 from pn2code.base.frozen import frozen, record
 from pn2code.robot.backend import Beside, Clearance, ClearanceKind, closest
 from pn2code.robot.bullet_world import BulletWorld, LoadedBody, LoadedRobot
-from pn2code.robot.gripped import GripContacts
+from pn2code.robot.led_contacts import LedContacts
 from pn2code.robot.part import Part
 from pn2code.robot.placed_links import tool_links
 from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
@@ -95,7 +95,7 @@ class BulletDistances:
         self._searched = 0.0
         self._arms: dict[str, Side] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
-        self.grips = GripContacts(cell)
+        self.led = LedContacts(cell)
         self._plates = {f"{r.name}/{a.name}" for r in cell.robots for a in r.axes.tables}
         self._sunk: dict[tuple[str, str], float] = {}
 

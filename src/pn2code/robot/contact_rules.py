@@ -65,10 +65,10 @@ def gripping(
         for kind in kinds
         for rule in (
             *(
-                ContactRule(tip, f"{kind}.*", PART_CONTACT, grips=kind in robot.carries)
+                ContactRule(tip, f"{kind}.*", PART_CONTACT, "tool" if kind in robot.carries else "")
                 for tip, robot in tips
             ),
-            *(ContactRule(f"*/{kind}.*", thing, PART_CONTACT) for thing in things),
+            *(ContactRule(f"*/{kind}.*", thing, PART_CONTACT, "part") for thing in things),
         )
     ]
 
@@ -82,4 +82,4 @@ def clamping(
         for jaw in jaws:
             for kind in kinds:
                 yield ContactRule(jaw, f"{kind}.*", PART_CONTACT)
-                yield ContactRule(jaw, f"*/{kind}.*", PART_CONTACT)
+                yield ContactRule(f"*/{kind}.*", jaw, PART_CONTACT, "part")

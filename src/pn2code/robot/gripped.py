@@ -1,87 +1,95 @@
-"""Which part a move goes to, of those that a tool may touch because it grips their kind.
+"""Whether a move leads to a part that its tool grips or works on, or away from one.
 
-    grips = GripContacts(cell)
-    grips.between("arm/tool_tip", "box.2")      # ("arm", "box.2"): permitted because `arm` grips boxes; else None
     ends = MoveEnds.of(cell.robot("arm"), "", motion.trajectory)
-    ends.is_at(part, T_world_part)              # whether the move begins or ends at this part
+    ends.is_at(box, T_world_part)              # whether the move begins or ends at a part of this kind
 
-On lines and arcs the contact links of a tool may touch the part that is gripped, put down or worked on, and no other
-one of its kind. Runs and the proofs over all runs ask the same question, about one move and one part; so it does not
-matter which other parts there are.
+Which contacts that permits `led_contacts` says.
 """
 
 from __future__ import annotations
 
-import fnmatch
+from dataclasses import field
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.active_motion import PATHS, MotionKind, turned_by
 from pn2code.robot.hulls import Hull
-from pn2code.robot.part import Part, carried_to
+from pn2code.robot.laid import BEYOND
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, RobotCell
+from pn2code.robot.robot_cell import PART_CONTACT, CellRobot
+from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.trajectories import Trajectory
 from pn2code.robot.transforms import Array, difference, inverse, matrix_of
 
-BEYOND = 0.03
-"""m: so far beyond its ends a move leads to a part, too: the rest of the way is another line."""
 _NEAR_END = 0.01
 """Of the way: from here to its end it gives the direction in which that leads."""
 
 
-class GripContacts:
-    """Contacts that are permitted only because a tool grips parts of a kind."""
-
-    def __init__(self, cell: RobotCell) -> None:
-        self._rules = cell.scene.contacts
-        self._known: dict[tuple[str, str], tuple[str, str] | None] = {}
-
-    def between(self, a: str, b: str) -> tuple[str, str] | None:
-        """The robot that grips, and the part; None: nothing permits it, or something else does."""
-        if (a, b) not in self._known:
-            self._known[a, b] = self._looked_up(a, b)
-        return self._known[a, b]
-
-    def _looked_up(self, a: str, b: str) -> tuple[str, str] | None:
-        found = None
-        for tool, part in ((a, b), (b, a)):
-            for rule in self._rules:
-                if fnmatch.fnmatchcase(tool, rule.a) and fnmatch.fnmatchcase(part, rule.b):
-                    if not rule.grips:
-                        return None
-                    found = tool.partition("/")[0], part
-        return found
-
-
 @frozen(eq=False)
-class _End:
+class End:
     """One end of a move.
 
     Args:
-        q: the joint position; grip: `T_world_tcp` of the tool that grips.
+        q: the joint position; grip: `T_world_tcp` of the tool that grips; coupling: of what couples it.
         points: of all tool frames, in the world; outward: where the move leads, away from its middle, of length 1, or
             0 if it only turns.
     """
 
     q: Array
     grip: Array
+    coupling: Array
     points: tuple[Array, ...]
     outward: Array
+
+    def is_at(self, kind: PartKind, frame: Array, less: float = 0.0) -> bool:
+        """Whether the tool grips a part or works on it there, or up to `BEYOND` further straight on.
+
+        It works on a part if a tool frame is in it or touches it.
+
+        Args:
+            frame: where the part is in the world.
+            less: m and rad, by how much what counts is narrowed.
+        """
+        if _is_gripped(kind, frame, self, less):
+            return True
+        back = inverse(frame)
+        turned = back[:3, :3] @ self.outward
+        hulls = Hull.of(kind.shape)
+        for point in self.points:
+            place = back[:3, :3] @ point + back[:3, 3]
+            if any(_is_met(hull, place, turned, PART_CONTACT - less) for hull in hulls):
+                return True
+        return False
+
+    def couples(self, kind: ToolKind, place: Array, less: float = 0.0) -> bool:
+        """Whether a tool that lies at a place is coupled or left there, or up to `BEYOND` further straight on."""
+        way, turn = _off(place, self.coupling, self.outward)
+        return way <= kind.tolerance - less and turn <= kind.angle - less
 
 
 @frozen(eq=False)
 class MoveEnds:
-    """Both ends of a move."""
+    """Both ends of a move.
+
+    Args:
+        tool: in use; "": none.
+        is_path: whether it is a line or an arc; turning: the turntables, belts and other axes that it moves.
+        known: what was asked about it, and the answers.
+    """
 
     robot: CellRobot
-    ends: tuple[_End, ...]
+    ends: tuple[End, ...]
+    tool: str
+    is_path: bool
+    turning: frozenset[str]
+    known: dict[object, bool] = field(default_factory=dict)
 
     @staticmethod
-    def of(robot: CellRobot, tool: str, path: Trajectory) -> MoveEnds:
+    def of(robot: CellRobot, tool: str, path: Trajectory, kind: MotionKind = "lin") -> MoveEnds:
         """Of a move with a tool that is changed, or without ("")."""
         joints = path.on_way(np.array([0.0, _NEAR_END, 1.0 - _NEAR_END, 1.0]))
-        frames = [robot.T_world_base @ robot.kinematics.forward(q) for q in joints]
+        frames = robot.T_world_base @ robot.kinematics.forward_many(joints)
         back = inverse(robot.kinematics.T_flange_tcp)
         further = [
             back @ own.T_flange_tcp
@@ -95,46 +103,29 @@ class MoveEnds:
             length = float(np.linalg.norm(way))
             outward = way / length if length > 1e-9 else np.zeros(3)
             points = (grip[:3, 3], *((frame @ own)[:3, 3] for own in further))
-            ends.append(_End(joints[end], grip, points, outward))
-        return MoveEnds(robot, tuple(ends))
+            ends.append(End(joints[end], grip, frame, points, outward))
+        return MoveEnds(robot, tuple(ends), tool, kind in PATHS, turned_by(robot, path))
 
-    def is_at(self, part: Part, frame: Array, less: float = 0.0) -> bool:
-        """Whether the tool grips a part or works on it at an end of the move, or up to `BEYOND` further straight on.
-
-        It works on a part if a tool frame is in it or touches it.
-
-        Args:
-            frame: where the part is in the world; of one that the robot itself moves that is worked out.
-            less: m and rad, by how much what counts is narrowed.
-        """
-        kind = part.kind
-        assert isinstance(kind, PartKind), "tools are coupled, not gripped"
-        hulls = Hull.of(kind.shape)
-        for end in self.ends:
-            own = part.carrier == self.robot.name
-            at = carried_to(self.robot, end.q, part) if own else frame
-            if _is_gripped(kind, at, end, less):
-                return True
-            back = inverse(at)
-            turned = back[:3, :3] @ end.outward
-            for point in end.points:
-                place = back[:3, :3] @ point + back[:3, 3]
-                if any(_is_met(hull, place, turned, PART_CONTACT - less) for hull in hulls):
-                    return True
-        return False
+    def is_at(self, kind: PartKind, frame: Array, less: float = 0.0) -> bool:
+        """Whether one of them is at a part that stands there."""
+        return any(end.is_at(kind, frame, less) for end in self.ends)
 
 
-def _is_gripped(kind: PartKind, frame: Array, end: _End, less: float) -> bool:
+def _is_gripped(kind: PartKind, frame: Array, end: End, less: float) -> bool:
     """Whether a part is where a tool grips it, or further on in the direction of the move."""
     for grip in kind.grips or (None,):
         place = frame if grip is None else frame @ matrix_of(grip)
-        off = place[:3, 3] - end.grip[:3, 3]
-        off = off - min(max(float(off @ end.outward), 0.0), BEYOND) * end.outward
-        if float(np.linalg.norm(off)) > kind.tolerance - less:
-            continue
-        if grip is None or difference(place, end.grip)[1] <= kind.angle - less:
+        way, turn = _off(place, end.grip, end.outward)
+        if way <= kind.tolerance - less and (grip is None or turn <= kind.angle - less):
             return True
     return False
+
+
+def _off(place: Array, frame: Array, outward: Array) -> tuple[float, float]:
+    """How far (m) and how much turned (rad) a place is from a frame that goes straight on."""
+    off = place[:3, 3] - frame[:3, 3]
+    off = off - min(max(float(off @ outward), 0.0), BEYOND) * outward
+    return float(np.linalg.norm(off)), difference(place, frame)[1]
 
 
 def _is_met(hull: Hull, point: Array, outward: Array, around: float) -> bool:

@@ -42,12 +42,12 @@ REST_GAP = 0.005
 """m: a part that is released may fall so far."""
 SEARCHED = 0.5
 """m: what is further below is not told."""
-_ROUNDING = 1e-6
+ROUNDING = 1e-6
 """m: what is further away by no more is as far away: numbers of a net and of cell.toml add up so well."""
 _STEEP = 0.7
 """Of the z of a normal: at most 45 degrees."""
 _ANY = 0.1
-_EDGE = 1e-4
+EDGE = 1e-4
 """m: what lies over one another by no more does not carry anything."""
 _UPRIGHT = 1e-4
 
@@ -151,10 +151,15 @@ class Ground:
 
     def middle(self, kind: PartKind, frame: Array) -> Array:
         """Where the middle of a part is, in the world."""
-        return middle_of(self._placed(kind, frame))
+        return middle_of(self.placed(kind, frame))
 
-    def _placed(self, kind: PartKind, frame: Array) -> list[Hull]:
+    def placed(self, kind: PartKind, frame: Array) -> list[Hull]:
+        """The pieces of a part that is there, in the world."""
         return [h.at(frame) for h in self._kinds[kind.name]]
+
+    def pieces(self, thing: str) -> list[Hull]:
+        """Of a thing of the scene, in the world; none: there is no such thing, or it moves."""
+        return [t.hull for t in self._things if t.name == thing]
 
     def rest(
         self,
@@ -171,7 +176,7 @@ class Ground:
             plates: where the turntables are, in the world.
             slack: m: what is so much further away, or overlaps by so much less, still counts.
         """
-        hulls, others = self._placed(kind, frame), tuple(others)
+        hulls, others = self.placed(kind, frame), tuple(others)
         on: set[str] = set()
         areas: list[Array] = []
         below, gap = "", math.inf
@@ -194,14 +199,13 @@ class Ground:
         areas: list[Array],
     ) -> tuple[set[str], str, float]:
         """What a piece stands on, and the nearest thing below it; `areas` gets where it does."""
-        lowest = face(hull, up=False, steep=_ANY, within=REST_GAP)
-        assert lowest is not None, "some face of a convex piece looks down"
+        lowest = underside(hull)
         low, high = hull.extent
         half = float(hull.middle[2] - low[2])
-        own_faces = [_smaller(x, _EDGE - slack) for x in (lowest.core, lowest.polygon)]
+        own_faces = [narrowed(x, EDGE - slack) for x in (lowest.core, lowest.polygon)]
         on: set[str] = set()
         below, gap = "", math.inf
-        reach = REST_GAP + slack + _ROUNDING
+        reach = REST_GAP + slack + ROUNDING
         for name, top in self._near(low, high, half, others, plates):
             found = []
             # What is round has a narrow face, and much that is nearly as low: its surface is between these two.
@@ -240,22 +244,23 @@ class Ground:
             across &= self._low[:, 2] <= low[2] + half
             for i in np.flatnonzero(across).tolist():
                 if i not in self._tops:
-                    self._tops[i] = _top(self._things[i].hull)
+                    self._tops[i] = upside(self._things[i].hull)
                 top = self._tops[i]
                 if top is not None:
                     yield self._things[i].name, top
         for name, frame in plates.items():
             for own in self.plates[name].hulls:
                 hull = own.at(frame)
-                if may(*hull.extent) and (top := _top(hull)) is not None:
-                    yield name, top
+                if may(*hull.extent) and (found := upside(hull)) is not None:
+                    yield name, found
         for name, kind, frame in others:
-            for hull in self._placed(kind, frame):
-                if may(*hull.extent) and (top := _top(hull)) is not None:
-                    yield name, top
+            for hull in self.placed(kind, frame):
+                if may(*hull.extent) and (found := upside(hull)) is not None:
+                    yield name, found
 
 
-def _smaller(polygon: Array, by: float) -> Array:
+def narrowed(polygon: Array, by: float) -> Array:
+    """A polygon without its edge; as it is, if nothing else is left."""
     out = shrunk(polygon, by)
     return out if len(out) >= 3 else polygon
 
@@ -266,7 +271,15 @@ def _shapes_of(kind: PartKind) -> tuple[Hull, ...]:
     return hulls
 
 
-def _top(hull: Hull) -> Face | None:
+def underside(hull: Hull) -> Face:
+    """The face with which a piece stands on something."""
+    lowest = face(hull, up=False, steep=_ANY, within=REST_GAP)
+    assert lowest is not None, "some face of a convex piece looks down"
+    return lowest
+
+
+def upside(hull: Hull) -> Face | None:
+    """The face on which something can stand; None: it is too steep."""
     return face(hull, up=True, steep=_STEEP, within=REST_GAP)
 
 

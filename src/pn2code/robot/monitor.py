@@ -22,8 +22,8 @@ from pn2code.robot.active_motion import PATHS, MotionKind
 from pn2code.robot.backend import Backend, Clearance, closest
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
-from pn2code.robot.gripped import GripContacts
 from pn2code.robot.kinematics import Conditioning
+from pn2code.robot.led_contacts import LedContact, LedContacts
 from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, pose_of
@@ -118,7 +118,7 @@ class Monitor:
         self._bases = {r.name: r.T_world_base for r in cell.moving}
         self._devices = frozenset(r.name for r in cell.devices)
         self._tools = {r.name: r.begins_with for r in cell.moving}
-        self._grips = GripContacts(cell)
+        self._led = LedContacts(cell)
 
     def use(self, robot: str, tool: str) -> None:
         """Which of the tools that it changes a robot has in use from now on ("": none): poses are those of its TCP."""
@@ -134,7 +134,7 @@ class Monitor:
         kinds: Mapping[str, MotionKind] | None = None,
         calm: Collection[str] = (),
         turning: Collection[str] = (),
-        leads_to: Callable[[str, str], bool] = lambda _robot, _part: True,
+        leads_to: Callable[[LedContact], bool] = lambda _contact: True,
     ) -> Verdict:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
@@ -147,8 +147,9 @@ class Monitor:
                 is on others touches no other robot, on lines and arcs neither.
             turning: turntables, belts and other axes that move, as `mill/lift`: what stands on these touches nothing
                 of others either.
-            leads_to: whether what a robot does on a line or an arc leads to a part, or away from it: of parts
-                that its tool grips it touches only these.
+            leads_to: whether what a robot does on a line or an arc leads to a contact, or away from it: of parts that
+                its tool grips, and of what the part in its tool can be put on, no other ones are touched. The same of
+                what stands on a turntable or belt that moves.
         """
         kinds = kinds or {}
         t = float(t)
@@ -182,9 +183,10 @@ class Monitor:
             moves = any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides)
             if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
-            grip = None if gap.allowed is None else self._grips.between(gap.a, gap.b)
-            if grip is not None and kinds.get(grip[0]) in PATHS and not leads_to(*grip):
-                gap = replace(gap, allowed=None)  # it is none that is gripped or put down now
+            led = None if gap.allowed is None else self._contact(gap, kinds, turning)
+            moved = turning if gap.kind != "scene" else ()  # the body of a belt stands
+            if led is not None and (led.other in moved or not leads_to(led)):
+                gap = replace(gap, allowed=None)  # nothing is gripped, lifted or put down there
             gaps.append(gap)
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:
@@ -199,6 +201,19 @@ class Monitor:
                 warnings.append(gap)
         clearances = None if measured is None else tuple(closest(gaps))
         return Verdict(t, samples, clearances, fault, tuple(warnings))
+
+    def _contact(
+        self, gap: Clearance, kinds: Mapping[str, MotionKind], turning: Collection[str]
+    ) -> LedContact | None:
+        """A contact that is permitted only if a move leads to it; None: it is permitted whatever moves."""
+        found = self._led.between(gap.a, gap.b)
+        if found is not None:
+            is_moved = gap.kind != "scene" and found.other in turning
+            return found if is_moved or kinds.get(found.robot) in PATHS else None
+        is_rider = gap.kind == "scene" and gap.plates and gap.a not in gap.plates
+        if not is_rider or gap.plates[0] not in turning or gap.b in turning:
+            return None  # it stands, or goes on to a belt that runs as one with its own
+        return self._led.of_rider(gap.a, gap.b, gap.plates[0])
 
     def minima(self, phase: str | None = None) -> tuple[Extreme, ...]:
         """The extremes of a phase (None: of the whole run), sorted by measure and robot."""

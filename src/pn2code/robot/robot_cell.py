@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from typing import Literal
 
 import numpy as np
 
@@ -91,13 +92,15 @@ class ContactRule:
     """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m).
 
     Args:
-        grips: `a` is of a tool that grips parts of the kind `b`: it may touch only the one to which a move leads.
+        led: it is permitted only with what a move leads to or comes from (`led_contacts`), because `a` is of a tool
+            that grips parts of the kind `b`, of what couples the tool `b`, a tool that `b` holds in its rack, or a part
+            that is carried; "": with all that have such names.
     """
 
     a: str
     b: str
     depth: float
-    grips: bool = False
+    led: Literal["", "tool", "part"] = ""
 
 
 @frozen(eq=False)

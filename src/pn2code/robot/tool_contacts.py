@@ -21,13 +21,13 @@ def coupling(robots: Sequence[CellRobot], tools: Mapping[str, ToolKind]) -> Iter
         ends = [f"{robot.name}/{link}" for link in end_links(robot)] if robot.tools else ()
         for name, kind in robot.tools.items():
             for end in ends:
-                yield from also_of_tools(ContactRule(end, name, PART_CONTACT), tools)
+                yield from also_of_tools(ContactRule(end, name, PART_CONTACT, "tool"), tools)
             held = f"{robot.name}/{name}"
             gripped = [f"{k}.*" for k in kind.takes] if kind.tool.contact_links else []
             for other in map(glob.escape, kind.holders):
-                yield from also_of_tools(ContactRule(held, other, PART_CONTACT), tools)
+                yield from also_of_tools(ContactRule(held, other, PART_CONTACT, "tool"), tools)
             for part in gripped:
-                yield from also_of_tools(ContactRule(held, part, PART_CONTACT, grips=True), tools)
+                yield from also_of_tools(ContactRule(held, part, PART_CONTACT, "tool"), tools)
 
 
 def end_links(robot: CellRobot) -> Iterator[str]:

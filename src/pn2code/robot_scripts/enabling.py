@@ -6,8 +6,9 @@ A variable that nothing in the net decides is one that a sensor decides.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Symbol
@@ -29,7 +30,7 @@ from pn2code.tdl import types as tdl
 from pn2code.tdl.paths import all_names
 
 
-@dataclass(slots=True)
+@record
 class Enabling:
     """Binds the variables of transitions.
 

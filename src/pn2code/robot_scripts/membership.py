@@ -367,8 +367,10 @@ def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[
         raise _UnaskableError(c)
     own = source if source is not None and source.kind is c.kind else None
     name = "Int" if c.kind is Kind.INT else "Real"
+    # Bounds of colour sets of one kind can be compared.
     if c.low is not None and not (own and own.low is not None and own.low >= c.low):  # type: ignore[operator]
         yield _compared(f"{name}.>=", value, c.low, span)
+    # Bounds of colour sets of one kind can be compared.
     if c.high is not None and not (own and own.high is not None and own.high <= c.high):  # type: ignore[operator]
         yield _compared(f"{name}.<=", value, c.high, span)
 

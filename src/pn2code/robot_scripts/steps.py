@@ -14,8 +14,8 @@ in a merged trace the cause stands before its effects.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from pn2code.base.frozen import record
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind
 from pn2code.robot_scripts import codes, unread
@@ -41,7 +41,7 @@ from pn2code.tdl import types as tdl
 from pn2code.tdl.paths import expressions_of
 
 
-@dataclass(slots=True)
+@record
 class StepTranslator:
     """Translates the occurrence of transitions.
 

@@ -10,6 +10,7 @@ that each run sees something else, and one seed gives the same runs again. So do
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field
@@ -22,18 +23,11 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.emission.write import expect_writable
 from pn2code.input_files import folder_of
-from pn2code.run.cell import (
-    Prepared,
-    RunOptions,
-    RunResult,
-    prepare,
-    run_once,
-    sensors_of,
-    summary_of,
-    write_results,
-)
-from pn2code.run.engine import Observer
+from pn2code.run.cell import run_once, sensors_of
+from pn2code.run.observer import Observer
+from pn2code.run.prepare import Prepared, RunOptions, prepare
 from pn2code.run.record import RunRecord
+from pn2code.run.results import RunResult, summary_of, write_results
 from pn2code.run.stops import Rate, Stops
 
 Watcher = TypeVar("Watcher", bound=Observer)
@@ -202,6 +196,15 @@ class Cycles:
         }
 
 
+def _far(number: int, count: int, passed: float) -> str:
+    """Which cycle begins, how long each one has taken, and about how much longer all of them take."""
+    text = f"cycle {number:,} of {count:,}"
+    if number == 1:
+        return text
+    each = passed / (number - 1)
+    return f"{text}, {each:.1f} s each, about {each * (count - number + 1):,.0f} s left"
+
+
 def run_cycles(
     path: Path,
     options: RunOptions,
@@ -228,8 +231,9 @@ def run_cycles(
         sensors = sensors_of(prepared, options, inputs, d)
         if sensors is None:
             return None
-        for number in range(1, plan.warm_up + plan.cycles + 1):
-            say(f"cycle {number:,} of {plan.warm_up + plan.cycles:,}")
+        begun, count = time.monotonic(), plan.warm_up + plan.cycles
+        for number in range(1, count + 1):
+            say(_far(number, count, time.monotonic() - begun))
             watcher = None if keeping is None else keeping.watcher()
             seen: list[Observer] = [] if watcher is None else [watcher]
             record = run_once(prepared, options, inputs, sensors, d, seen, stops)

@@ -15,7 +15,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NoReturn, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -34,24 +34,21 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.led_contacts import LedContact
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, pose_of
 from pn2code.run.accuracy import distance, off_line
-from pn2code.run.command_words import kind_and_label, words
+from pn2code.run.activities import Activities
+from pn2code.run.command_words import kind_and_label
 from pn2code.run.device import DeviceExecutor
+from pn2code.run.doings import doings, repeats_without_time, stuck
 from pn2code.run.failing import failed_in
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Said
-from pn2code.run.record import (
-    ActionRecord,
-    ActivityRecord,
-    BrokenZone,
-    MessageRecord,
-    PartRecord,
-    RunRecord,
-)
+from pn2code.run.observer import Observer
+from pn2code.run.record import ActionRecord, BrokenZone, MessageRecord, PartRecord, RunRecord
 from pn2code.run.runner import CellStoppedError, RobotRunner, StoppedByHand
 from pn2code.run.sensors import Sensors
 from pn2code.run.stops import Stops
@@ -76,22 +73,6 @@ from pn2code.tdl.requests import (
 from pn2code.trace.growing import GrowingTrace
 
 
-class Observer(Protocol):
-    """Who watches a run: the progress line, the camera."""
-
-    def begun(self, engine: Engine) -> None:
-        """The arms stand at HOME, nothing has happened yet."""
-
-    def advanced(self, engine: Engine) -> None:
-        """Time has moved to `engine.now`; the commands that end now are finished."""
-
-    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
-        """The arms stood like this (rad) at time t."""
-
-    def ended(self, engine: Engine) -> None:
-        """The run is over; `engine.record` has the verdict."""
-
-
 def _nobody() -> str:
     return ""
 
@@ -103,8 +84,7 @@ class Engine:
     Args:
         record: filled on the way.
         supervisor: started in lock-step mode; supervisor_trace: the trace it writes.
-        supervisor_depth: how many parts of a transition's name stand before the activity: 2 for
-        "Cell.Supervisor.Approach.Send".
+        supervisor_depth: see `Activities`.
         robots: in the order of cell.toml; then the devices, which are robots without an arm.
         sensors: what decides what the net leaves open.
         partition: the net and its owners.
@@ -130,32 +110,24 @@ class Engine:
     stops: Stops | None = None
     failing: Failing = field(default_factory=Failing)
     now: float = 0.0
-    activity: str = ""
+    activities: Activities = field(init=False)
     around: Surroundings = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
     _finished: bool = False
-    _activity_start: float = 0.0
     _ids: dict[str, str] = field(init=False)
-    _commanded: dict[str, tuple[str, ...]] = field(init=False)
-    _owner_of: dict[str, str] = field(init=False)
-    _ordered_by: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Of each transition by name: its XML id, and to whom it writes messages."""
-        divided = self.partition
-        readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
+        """What goes with the cell and its net."""
         self.around = Surroundings(self.cell, self.backend, self.robots)
-        self._ids = {t.name: t.id for t in divided.net.transitions}
-        self._owner_of = {
-            t.name: divided.owners[o].name
-            for t, o in zip(divided.net.transitions, divided.transition_owner, strict=True)
-        }
-        self._commanded = {
-            t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
-            for t in divided.net.transitions
-        }
+        self.activities = Activities(self.partition, self.supervisor_depth, self.record.activities)
+        self._ids = {t.name: t.id for t in self.partition.net.transitions}
+
+    @property
+    def activity(self) -> str:
+        """The activity of the supervisor that is under way; "": none."""
+        return self.activities.now
 
     def add_robot(
         self,
@@ -186,7 +158,9 @@ class Engine:
                 self._advance(self._next_event())
                 without_time = without_time + 1 if self.now <= before else 0
                 if without_time > MOST_AT_ONCE:
-                    self._repeats_without_time()
+                    raise CellStoppedError(
+                        repeats_without_time(self.robots, self.now, MOST_AT_ONCE)
+                    )
         except CellStoppedError as why:
             self._stop(why)
         return self._close()
@@ -194,15 +168,7 @@ class Engine:
     def _heed(self) -> None:
         """Stops the cell if somebody wants so."""
         if who := self.interrupted():
-            raise StoppedByHand(f"stopped by {who}; {self._doing()}")
-
-    def _repeats_without_time(self) -> NoReturn:
-        busy = [r for r in self.robots if r.waiting is None and not r.finished]
-        names = " and ".join(r.name for r in busy) or "a program"
-        raise CellStoppedError(
-            f"{names} carried out {MOST_AT_ONCE:,} commands at {self.now:.3f} s without time passing: a script repeats "
-            "commands that take no time"
-        )
+            raise StoppedByHand(f"stopped by {who}; {doings(self.robots)}")
 
     def _at_rest(self) -> bool:
         """Whether no arm moves. Devices may go on: they have nothing to bring to rest."""
@@ -231,7 +197,7 @@ class Engine:
         if self.record.final:
             end["final"] = list(self.record.final)
         self.record.events.append(end)
-        self._close_activity(self.now)
+        self.activities.close(self.now)
         for observer in self.observers:
             observer.ended(self)
         return self.record
@@ -273,30 +239,7 @@ class Engine:
     def _supervisor_fired(self) -> None:
         event = self.supervisor_trace.next_occurrence()
         self._occurrence(event)
-        self._enter_activity(event, self.now)
-
-    def _enter_activity(self, event: Mapping[str, Any], t: float) -> None:
-        """The pages below the supervisor's own are its activities: a firing on another page ends one."""
-        path = event["transition"].split(".")
-        depth = self.supervisor_depth
-        activity = path[depth] if len(path) > depth + 1 else ""
-        if activity != self.activity:
-            self._close_activity(t)
-            self.activity = activity
-            self._activity_start = t
-        for reader in self._commanded.get(event["transition"], ()):
-            self._ordered_by[reader] = self.activity
-
-    def _pass_on(self, transition: str) -> None:
-        """Whom a robot gives an order works for the activity for which the robot does."""
-        activity = self._ordered_by.get(self._owner_of[transition])
-        if activity is not None:
-            self._ordered_by |= dict.fromkeys(self._commanded[transition], activity)
-
-    def _close_activity(self, t: float) -> None:
-        if self.activity:
-            self.record.activities.append(ActivityRecord(self.activity, self._activity_start, t))
-            self.activity = ""
+        self.activities.fires(event["transition"], self.now)
 
     def _occurrence(self, event: dict[str, Any]) -> None:
         self.record.events.append({**event, "step": next(self._steps)})
@@ -378,7 +321,7 @@ class Engine:
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
-        robot.activity = self._ordered_by.get(robot.name, self.activity)
+        robot.activity = self.activities.of(robot.name)
         if isinstance(command, ToolAction):
             self.record.events.append(
                 {
@@ -406,23 +349,11 @@ class Engine:
         if self._next_model_time is not None and not self._finished:
             times.append(self._next_model_time)
         if not times:
-            raise CellStoppedError(self._stuck())
+            raise CellStoppedError(stuck(self.robots, self.now))
         if not self._finished:
             # The supervisor stops for a late answer as soon as it is late, not when something else happens.
             times.append(math.nextafter(self._answer_due, math.inf))
         return max(self.now, min(times))
-
-    def _stuck(self) -> str:
-        waits = [
-            f"{r.name} waits for {' or '.join(r.waiting.names)} ({r.script}:{r.waiting.line})"
-            if r.waiting
-            else f"{r.name} has ended"
-            for r in self.robots
-        ]
-        return (
-            f"the cell is stuck at {self.now:.3f} s: the supervisor has nothing to do and waits for the robots, "
-            + ", ".join(waits)
-        )
 
     def _advance(self, target: float) -> None:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
@@ -496,7 +427,7 @@ class Engine:
                         "origin": self._ids.get(name, ""),
                     }
                 )
-                self._pass_on(name)
+                self.activities.pass_on(name)
             case MessageConsumed(file=channel, values=values):
                 message = MessageRecord(self.now, channel, values)
                 self.record.messages.append(message)
@@ -534,7 +465,9 @@ class Engine:
         }
         calm = [name for name, plates in turns.items() if not plates]
         turning = frozenset[str]().union(*turns.values())
-        verdict = self.monitor.check(t, joints, self.activity, kinds, calm, turning, self._leads_to)
+        verdict = self.monitor.check(
+            t, joints, self.activity, kinds, calm, turning, lambda led: self._leads_to(led, joints)
+        )
         self.record.sample(verdict)
         for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
@@ -544,16 +477,16 @@ class Engine:
             observer.sampled(self, t, joints)
         if verdict.fault is not None:
             self.now = t
-            raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+            raise CellStoppedError(f"{verdict.fault.message}; {doings(self.robots)}")
         if why := self.around.slides_off(joints):
             self.now = t
-            raise CellStoppedError(f"{why}; {self._doing()}")
+            raise CellStoppedError(f"{why}; {doings(self.robots)}")
         self._expect_slow(t, joints)
 
-    def _leads_to(self, robot: str, part: str) -> bool:
-        """Whether the line or arc that a robot is on leads to a part, or away from it."""
-        runner = next(r for r in self.robots if r.name == robot)
-        return self.around.leads_to(runner, part)
+    def _leads_to(self, contact: LedContact, joints: Mapping[str, Array]) -> bool:
+        """Whether the line or arc that a robot is on leads to a contact, or away from it."""
+        runner = next(r for r in self.robots if r.name == contact.robot)
+        return self.around.leads_to(runner, contact, joints)
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""
@@ -564,17 +497,7 @@ class Engine:
         self.record.too_fast = BrokenZone(found.zone.name, t, found.link, found.speed, found.point)
         self.backend.light_zone(found.zone.name)
         who = self.cell.robot(found.robot).words
-        raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
-
-    def _doing(self) -> str:
-        """What everybody was doing, for messages: script line, net transition, command."""
-        parts = []
-        for r in self.robots:
-            if r.motion is None:
-                parts.append(f"{r.name} at rest")
-                continue
-            parts.append(f"{r.at(r.line)}: {r.name}: {words(r.motion.command, _slides(r))}")
-        return "under way: " + "; ".join(parts)
+        raise CellStoppedError(f"{who}: {found.words()}; {doings(self.robots)}")
 
     def _stop(self, problem: CellStoppedError) -> None:
         """Everybody comes to rest; what was under way is recorded as cut short."""
@@ -588,8 +511,3 @@ class Engine:
                 robot.motion = None
             robot.files.stopped(why)
         self.supervisor.stop(why)
-
-
-def _slides(robot: RobotRunner) -> tuple[bool, ...]:
-    """Which axes of an arm slide."""
-    return () if robot.arm is None else tuple(robot.arm.robot.kinematics.alone.slides.tolist())

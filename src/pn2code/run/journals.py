@@ -45,7 +45,7 @@ def say_where(out: Path, config: CellConfig, values: Mapping[str, str], shared: 
 
 
 class RunJournal:
-    """An observer (`run.engine.Observer`) that writes the journal of all robots and devices of a run."""
+    """An observer (`run.observer.Observer`) that writes the journal of all robots and devices of a run."""
 
     def __init__(self, path: Path, session: str, began: float) -> None:
         self._journal = Journal(path, "robots", session=session, began=began)

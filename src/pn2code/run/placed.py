@@ -9,15 +9,10 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics
 from pn2code.input_files import folder_of
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.run.cell import (
-    RunOptions,
-    prepare,
-    run_once,
-    sensors_of,
-    summary_of,
-    write_results,
-)
+from pn2code.run.cell import run_once, sensors_of
+from pn2code.run.prepare import RunOptions, prepare
 from pn2code.run.record import RunRecord
+from pn2code.run.results import summary_of, write_results
 
 
 def run_placed(

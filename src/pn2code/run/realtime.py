@@ -1,8 +1,7 @@
 """The same cell on the wall clock: the supervisor runs by itself, woken by the files, as on a real cell.
 
-Messages, scripts, arms and checks are those of the lock-step engine; only time is real. A file that
-cannot be taken is given
-the grace of the protocol (I6), a dead or stopped supervisor stops the robots (I8, I9).
+Messages, scripts, arms and checks are those of the lock-step engine; only time is real. A file that cannot be taken is
+given the grace of the protocol (I6), a dead or stopped supervisor stops the robots (I8, I9).
 """
 
 from __future__ import annotations
@@ -100,7 +99,7 @@ class RealtimeEngine(Engine):
             if "transition" in line:
                 t = float(line["t"]) * self.speed
                 self.fired.append({**line, "t": t})
-                self._enter_activity(line, t)
+                self.activities.fires(line["transition"], t)
 
     def _look_at_the_clock(self) -> None:
         self.now = (time.perf_counter() - self._began) * self.speed

@@ -30,6 +30,7 @@ from pn2code.robot.clamps import (
 )
 from pn2code.robot.commands import Command, Handling, Move, MoveExternal
 from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import LedContact, LedContacts
 from pn2code.robot.part import PartChange, PartFault
 from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
@@ -51,12 +52,14 @@ class Surroundings:
     robots: Sequence[RobotRunner]
     _keeper: PartKeeper = field(init=False)
     _zones: ZoneWatch = field(init=False)
+    _led: LedContacts = field(init=False)
     _ends: dict[str, tuple[Motion, MoveEnds]] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         """The parts of the start; nothing is shown yet."""
         self._keeper = PartKeeper(self.cell, self.backend)
         self._zones = ZoneWatch(self.cell)
+        self._led = LedContacts(self.cell)
 
     @property
     def parts(self) -> Parts:
@@ -126,14 +129,19 @@ class Surroundings:
             except PartFault as fault:
                 raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
 
-    def leads_to(self, robot: RobotRunner, part: str) -> bool:
-        """Whether the move that is under way begins or ends where a part is gripped."""
-        motion, own = robot.motion, self.parts.present[part]
-        assert motion is not None and robot.arm is not None, "an arm moves"
+    def leads_to(
+        self, robot: RobotRunner, contact: LedContact, joints: Mapping[str, Array]
+    ) -> bool:
+        """Whether the move that is under way leads to a contact, or comes from it; `joints`: where all stand."""
+        motion, arm = robot.motion, robot.arm
+        assert motion is not None and arm is not None, "an arm moves"
         if robot.name not in self._ends or self._ends[robot.name][0] is not motion:
-            arm = robot.arm
-            self._ends[robot.name] = motion, MoveEnds.of(arm.robot, arm.tool, motion.trajectory)
-        return self._ends[robot.name][1].is_at(own, self.parts.world(own))
+            made = MoveEnds.of(arm.robot, arm.tool, motion.trajectory, motion.kind)
+            self._ends[robot.name] = motion, made
+        present = self.parts.present
+        touching = present.get(contact.part), present.get(contact.other)
+        ends = self._ends[robot.name][1]
+        return self._led.is_led(contact, ends, touching, lambda name: joints[name])
 
     # --- a motion has ended --------------------------------------------------------------------
 

@@ -173,7 +173,7 @@ class _Process:
     def _collect(stream: IO[bytes], output: Output) -> None:
         """Texts of CPN ML are bytes, one a character."""
         with stream:
-            while data := stream.read1(1 << 16):  # type: ignore[attr-defined]
+            while data := stream.read1(1 << 16):  # type: ignore[attr-defined]  # pipes have it
                 output.write(data.decode("latin-1"))
 
     def _feed(self, stream: IO[bytes], given: Trace) -> None:

@@ -32,6 +32,7 @@ def arguments_of(e: core.Exp) -> tuple[core.Exp, ...]:
 def pair_of(e: core.RecordExp) -> tuple[core.Exp, core.Exp]:
     """The components of a record of two, in order."""
     fields = dict(e.fields)
+    # The record has two fields.
     return (fields["1"], fields["2"]) if "1" in fields else tuple(fields.values())  # type: ignore[return-value]
 
 

@@ -219,6 +219,7 @@ class Counter:
             values = [evaluator.colours.all(s.colset) for s in variables if s.colset is not None]
             for row in itertools.product(*values):
                 try:
+                    # The value is a multi-set or a list, which has a length.
                     found.add(len(evaluator.value(e, dict(zip(variables, row, strict=True)))))  # type: ignore[arg-type]
                 except MlException:
                     continue  # with these values nothing occurs: the run stops with an error

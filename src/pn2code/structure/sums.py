@@ -93,4 +93,4 @@ def summed(items: Iterable[tuple[Part, int]]) -> dict[Part, int]:
 
 def image_type(step: Image) -> Type:
     """What the function gives."""
-    return step.function.type.result  # type: ignore[union-attr]
+    return step.function.type.result  # type: ignore[union-attr]  # it is a function

@@ -68,8 +68,8 @@ class Ending:
         least, most: ns, over all runs in which each command takes its planned time and everything else none; None: not
             known, or there is no most.
         fastest, slowest: such runs, if they were wanted.
-        held_up: ns, by how much the slowest run may be faster than `most`, as in it what ends within a millisecond of
-            each other ends the other way round.
+        held_up: ns, by how much all runs may be faster than `most`, as in the slowest one what ends within a
+            millisecond of each other ends the other way round, or a late answer, or a script, stops it.
     """
 
     places: tuple[str, ...]
@@ -98,7 +98,8 @@ def _unless(others: Sequence[str]) -> tuple[Within, str]:
 
 
 ENDLESS = "a run may go on for ever, and never come to its end"
-"""One of `Cycle.others`."""
+NO_END = "no run comes to its end"
+"""Some of `Cycle.others`, of runs that go on."""
 
 
 @frozen
@@ -108,8 +109,8 @@ class Cycle:
     Args:
         endings: by final places; [] if no end was found.
         why: why they are not known; "": they are.
-        repeats: the transitions of a repetition that takes time and after which the cell can come to its end; so there
-            is no longest cycle.
+        repeats: the transitions of a repetition that takes time and after which the cell can come to its end, with
+            nothing that stops it; so there is no longest cycle.
         at_least: ns, however late anybody is, if no command takes less than its time.
         at_most: ns, in whatever order things end, if no command takes more than its time.
         others: what runs may do that do not come to the end.
@@ -152,7 +153,7 @@ class Cycle:
     @property
     def ends(self) -> list[str]:
         """Of what runs may do that do not come to the end, that they end before it."""
-        return [x for x in self.others if x != ENDLESS]
+        return [x for x in self.others if x not in (ENDLESS, NO_END)]
 
     def within(self, seconds: float) -> tuple[Within, str]:
         """Whether each run comes to its end within so many seconds, and why not, or why it is not known."""
@@ -160,15 +161,21 @@ class Cycle:
         if self.repeats:
             return "no", "the cell can repeat something for as long as it likes"
         if not self.why and not self.endings:
-            return "no", "no run comes to its end"
+            return "no", NO_END
         if self.why and self.at_most is not None and self.bounded is not None:
             return self._bounded_within(limit)
         if self.why or self.most is None:
             # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
-            return "unknown", self.why or "there is no longest cycle"
+            stops = [f"there is no longest cycle, but {x}" for x in self.ends]
+            return "unknown", self.why or [*stops, "there is no longest cycle"][0]
         surely = max(e.most - e.held_up for e in self.endings if e.most is not None)
         if surely - TIE > limit:
             return "no", f"a run takes at least {seconds_down(surely)} s"
+        if self.least is not None and self.least - TIE > limit:
+            return "no", f"no cycle takes less than {seconds_down(self.least)} s"
+        if self.most + TIE > limit and self.ends:
+            most = f"the longest cycle takes no more than {seconds_up(self.most)} s"
+            return "unknown", f"{most}, but {'; '.join(self.ends)}"
         if self.most + TIE > limit:
             return "unknown", f"the longest cycle takes {between(surely, self.most)}"
         return _unless(self.others)

@@ -164,6 +164,14 @@ class Anyhow:
             return None
         return longest_inside(self.successors, nodes)
 
+    def never_stops(self, latest: int) -> bool:
+        """Whether nothing stops a run, in whatever order things end: no fault, no script, no answer that is later than
+        `latest` (ns)."""
+        owed = map(self.inside, self.graph.running.owing.values())
+        return not (self.faults or self.halts) and all(
+            ns is not None and ns <= latest for ns in owed
+        )
+
     def most(self) -> tuple[TimedPath | None, list[int]]:
         """The way on which most is done, and, where there is none, the elements of a repetition that takes time."""
         paths = TimedPaths(self.successors, self.ends())

@@ -11,6 +11,7 @@ orders of this run: who gets a zone first stays so.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from functools import cached_property
 
 from pn2code.base.frozen import frozen
 from pn2code.timing.causes import Occurrence, Story
@@ -43,6 +44,11 @@ class Study:
         """When the last of all that ends a run has occurred."""
         return max((self.story.occurrences[i].time for i in self._last), default=0.0)
 
+    @property
+    def last(self) -> float:
+        """When the last of all has occurred: a device may be at work after the end."""
+        return max((o.time for o in self.story.occurrences), default=0.0)
+
     def _path(self) -> list[int]:
         occurrences = self.story.occurrences
         if not self._last:
@@ -72,6 +78,20 @@ class Study:
     def busy(self, owner: int) -> float:
         """How long an owner is at work."""
         return sum(o.seconds for o in self.story.occurrences if o.owner == owner)
+
+    def needed(self, owner: int) -> float:
+        """How long of that it was at work on what the end of the run had to wait for."""
+        return sum(o.seconds for o in self._needed if o.owner == owner)
+
+    @cached_property
+    def _needed(self) -> list[Occurrence]:
+        occurrences = self.story.occurrences
+        found, todo = set(self._last), list(self._last)
+        while todo:
+            causes = set(occurrences[todo.pop()].causes) - found
+            found |= causes
+            todo += causes
+        return [occurrences[i] for i in sorted(found)]
 
     def waits(self, owner: int) -> list[Wait]:
         """For whom an owner waits between its occurrences, the longest first."""

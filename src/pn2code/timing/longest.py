@@ -65,7 +65,7 @@ class TimedPaths:
 
     def __init__(self, successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> None:
         self.successors, self.ends = successors, ends
-        self.leading = _leading(successors, ends)
+        self.leading = leading_to(successors, ends)
         """by node: whether an end can be reached"""
         self._members = list(components(range(len(successors)), self._after))[::-1]
         """the components, in an order in which arcs lead forwards"""
@@ -83,6 +83,13 @@ class TimedPaths:
         return any(len(members) > 1 for members in self._members) or any(
             node in self._after(node) for node in range(len(self.successors))
         )
+
+    def around(self) -> list[int]:
+        """The marks of what is on the cycle that takes time, without those that are no element's."""
+        out = []
+        for node, target in zip(self.cycle, [*self.cycle[1:], *self.cycle[:1]], strict=True):
+            out.append(max(mark for to, _, mark in self.successors[node] if to == target))
+        return [m for m in out if m >= 0]
 
     def longest(self, ends: Collection[int] | None = None) -> TimedPath | None:
         """The longest way; None: there is none, or, with a cycle, no longest one.
@@ -188,7 +195,8 @@ def _back(before: dict[int, tuple[int, int]], node: int) -> list[tuple[int, int]
     return out[::-1]
 
 
-def _leading(successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> list[bool]:
+def leading_to(successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> list[bool]:
+    """By node: whether one of these ends can be reached from it."""
     into: list[list[int]] = [[] for _ in successors]
     for node, arcs in enumerate(successors):
         for target, *_ in arcs:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -26,21 +27,23 @@ from pn2code.geometry.words import numbers, reason, words
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
-from pn2code.timing.answers import ENDLESS, Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.answers import ENDLESS, NO_END, Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
 from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import TimedPath, TimedPaths, longest_inside
 from pn2code.timing.search import TIE, Search
+from pn2code.timing.unstopped import Unstopped
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.control_types import CellProgram
-from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.controller.not_modelled import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
 AT_ONCE = "sensors and people answer at once"
 CLOCK_RUNS = "a unit of the net's time is a second (`--time-scale 1`)"
 _HALTS = "a script may come to where none of its transitions is possible, and stop the cell"
+RAISES = "a condition of a script may raise an exception, and stop the cell"
 _OPEN = {
     "waits": "how long a script waits cannot be computed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
@@ -78,10 +81,12 @@ class Times:
 
 @frozen(eq=False)
 class Measured:
-    """All that was gone through in one layout: with planned times, and in whatever order things end."""
+    """All that was gone through in one layout: with planned times, and in whatever order things end; and of the former
+    the runs that nothing stops."""
 
     search: Search
     anyhow: Anyhow
+    runs: Unstopped
 
 
 def look(
@@ -138,7 +143,7 @@ def look(
         stage("measuring commands and cycles ...")
         one = _Look(graph, cell, config, name, folder, opened)
         made.append(one.layout(say, limits.deadline))
-        measured(Measured(one.search, one.anyhow))
+        measured(Measured(one.search, one.anyhow, one.runs))
     return Times(tuple(made), timeout)
 
 
@@ -154,11 +159,12 @@ class _Look:
         folder: Path | None,
         opened: OpenNet,
     ) -> None:
-        self.graph, self.cell, self.config, self.name = graph, cell, config, name
+        self.graph, self.cell, self.name = graph, cell, name
         self.folder, self.opened = folder, opened
         self.doings = Doings(graph, cell)
         self.anyhow = Anyhow(self.doings)
         self.search = Search(self.doings)
+        self.timeout = round(config.supervisor.reply_timeout_s * NS)
         owners = graph.partition.owners
         self.owner = {o.index: o.name for o in owners}
 
@@ -179,6 +185,11 @@ class _Look:
             _clause(self.anyhow.why),
             tuple(o.name for o in self.graph.partition.owners if o.kind is OwnerKind.DEVICE),
         )
+
+    @cached_property
+    def runs(self) -> Unstopped:
+        """Those of the search that nothing stops, once all are known that there are."""
+        return Unstopped(self.search, self.timeout)
 
     def _transition(self, element: int) -> str:
         return self.graph.running.net.transitions[self.graph.elements[element].transition].name
@@ -212,7 +223,7 @@ class _Look:
     def _cycle(self) -> Cycle:
         search, anyhow = self.search, self.anyhow
         is_known = not search.why
-        around = search.around() if is_known else []
+        around = self.runs.around() if is_known and search.cycle else []
         occurring = (e for e in around if not self.graph.elements[e].is_step)
         repeats = tuple(dict.fromkeys(map(self._transition, occurring)))
         at_least = at_most = None
@@ -272,7 +283,11 @@ class _Look:
             )
 
     def _surely(self, worst: TimedPath, nodes: Sequence[int]) -> int:
-        """ns: some run to these situations takes no less, whatever ends before what it is a tie with."""
+        """ns: some run to these situations that nothing stops takes no less, whatever ends before what it is a tie
+        with; 0: there is none."""
+        if not self.runs.is_all:
+            longest = self.runs.longest(nodes)
+            return 0 if longest is None else longest.ns
         held_up = self.search.held_up(0, worst.arcs)
         if not held_up:
             return worst.ns
@@ -289,17 +304,16 @@ class _Look:
         yield from late
         if search.halts:
             yield _HALTS
+        if search.may_raise():
+            yield RAISES
         if search.is_endless and not search.cycle:
             yield ENDLESS
         if not search.ends and not search.why:
-            yield "no run comes to its end"
+            yield NO_END
 
     def _two_messages(self) -> Iterator[str]:
-        for channel in self.graph.partition.channels:
-            if any(marked.get(channel.place, 0) > 1 for marked in self.graph.marked):
-                yield (
-                    f"channel `{channel.name}` may come to hold two messages, and then the cell stops"
-                )
+        for name in self.search.overfull():
+            yield f"channel `{name}` may come to hold two messages, and then the cell stops"
 
     def _bounded(self, late: Sequence[str]) -> Iterator[str]:
         """What runs may do that do not come to the end, in whatever order things end."""
@@ -323,18 +337,9 @@ class _Look:
 
     def _owed(self) -> Iterator[tuple[str, int | None]]:
         """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
-        situations = self.search.situations
-        # Where nothing more happens the supervisor still waits, and no answer comes.
-        stuck = set(self.search.stuck)
         for owner in self.graph.partition.owners:
-            place = self.graph.running.owing.get(owner.index)
-            if place is None:
-                continue
-            marked = self.graph.marked
-            owing = [i for i, (state, *_) in enumerate(situations) if place in marked[state]]
-            is_never_answered = not stuck.isdisjoint(owing)
-            ns = None if is_never_answered else longest_inside(self.search.successors, owing)
-            yield owner.phrase, ns
+            if owner.index in self.runs.owed:
+                yield owner.phrase, self.runs.owed[owner.index]
 
     def _owed_anyhow(self) -> Iterator[tuple[str, int | None]]:
         """The same in whatever order things end: no more than this."""
@@ -374,17 +379,16 @@ class _Look:
             owed: for how long at most (ns; None: without a limit).
             most_owed: where that is not known: no longer than this, so that it is not excluded.
         """
-        timeout = self.config.supervisor.reply_timeout_s
         told = set[str]()
         for is_bound, (who, ns) in [*((False, x) for x in owed), *((True, x) for x in most_owed)]:
-            if who in told or (ns is not None and ns + TIE <= timeout * NS):
+            if who in told or (ns is not None and ns + TIE <= self.timeout):
                 continue
             told.add(who)
             after = "after" if not is_bound else "as late as after"
             when = "at any time, or never" if ns is None else f"{after} {ns / NS:.3f} s"
             yield (
                 f"an answer of {who} may come {when}, later than reply_timeout_s "
-                f"({timeout:g} s) allows"
+                f"({self.timeout / NS:g} s) allows"
             )
 
     def _run(self, way: TimedPath | None, which: str) -> Run | None:

@@ -48,10 +48,15 @@ class Activity:
 
 @frozen
 class Side:
-    """A robot or device: how long it works, and for which transitions of others it waits (s)."""
+    """A robot or device: how long it works, and for which transitions of others it waits (s).
+
+    Args:
+        needed: how long of that it works on what the end of the run had to wait for.
+    """
 
     owner: str
     busy: float
+    needed: float
     share: float
     waits: tuple[tuple[str, float], ...]
 
@@ -62,11 +67,13 @@ class RunTimes:
 
     Args:
         ended: why, as the trace says; seconds: until the last occurrence of the supervisor or an arm.
+        whole: until the run ended.
     """
 
     file: str
     ended: str
     seconds: float
+    whole: float
     path: tuple[Segment, ...]
     activities: tuple[Activity, ...]
     sides: tuple[Side, ...]
@@ -145,11 +152,12 @@ def look_at(opened: OpenNet, run: Path, d: Diagnostics) -> RunTimes | None:
     study = Study(story, ends)
     names = [o.name for o in owners]
     transitions = [t.name for t in opened.flat.transitions]
-    whole = max(study.seconds, 1e-9)
+    whole = max(study.last, 1e-9)
     sides = tuple(
         Side(
             o.name,
             study.busy(o.index),
+            study.needed(o.index),
             study.busy(o.index) / whole,
             tuple((transitions[w.transition], w.seconds) for w in study.waits(o.index)),
         )
@@ -160,6 +168,7 @@ def look_at(opened: OpenNet, run: Path, d: Diagnostics) -> RunTimes | None:
         str(file),
         story.ended,
         study.seconds,
+        story.seconds,
         tuple(_segments(story, study, names, transitions)),
         tuple(_activities(story, study, names, transitions)),
         sides,

@@ -10,6 +10,8 @@ MOST_ROWS = 20
 """Of each table that is not full."""
 MOST_WAITS = 3
 """Transitions that are named for which somebody waits."""
+_SHOWN = 0.001
+"""s: of such a difference it is spoken."""
 
 
 def text(found: RunTimes, *, full: bool) -> str:
@@ -18,7 +20,10 @@ def text(found: RunTimes, *, full: bool) -> str:
 
 
 def _lines(found: RunTimes, full: bool) -> Iterator[str]:
-    yield f"{found.file}: {found.seconds:.3f} s, {found.ended or 'without an end'}"
+    yield f"{found.file}: {found.whole:.3f} s, {found.ended or 'without an end'}"
+    if found.whole - found.seconds >= _SHOWN:
+        at = f"at {found.seconds:.3f} s"
+        yield f"The supervisor and the arms have done their last transition {at}: what follows is about that."
     yield ""
     yield "Critical path: each begins when the one before it has ended"
     rows = [
@@ -49,10 +54,10 @@ def _lines(found: RunTimes, full: bool) -> Iterator[str]:
         (("who", "transition", "times", "busy", "critical", "gain at most"), *gains), full
     )
     yield ""
-    most = max(found.sides, key=lambda s: s.busy, default=None)
+    most = max(found.sides, key=lambda s: s.needed, default=None)
     if most is not None:
         yield (
-            f"No overlapping makes it shorter than {most.busy:.3f} s: so long `{most.owner}` is at work."
+            f"No overlapping makes it shorter than {most.needed:.3f} s: so long `{most.owner}` is at work."
         )
     yield ""
     yield "Utilisation, and for what each waits"

@@ -28,7 +28,7 @@ from pn2code.geometry.graph import CLOCK
 from pn2code.geometry.legs import Stand
 from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc, TimedPath, TimedPaths
-from pn2code.timing.steps import Kind, kinds, stops
+from pn2code.timing.steps import Kind, kinds, raises, stops
 
 TIE = 1_000_000
 """ns: what ends within this time may end in either order. Results are as accurate as that."""
@@ -90,6 +90,12 @@ class Search:
         self._from: list[tuple[int, int]] = []
         self._kinds = kinds(self.graph)
         self._stopped = stops(self.graph)
+        self._raises = raises(self.graph)
+        self._full = frozenset(
+            i
+            for i, marked in enumerate(self.graph.marked)
+            if any(marked.get(c.place, 0) > 1 for c in self.graph.partition.channels)
+        )
         self._told: dict[int, frozenset[int]] = {}
         self._calm = self.graph.running.firing
         self._calm_seconds: set[int] = set()
@@ -172,14 +178,24 @@ class Search:
         ]
 
     def stopped(self) -> set[int]:
-        """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, or
-        a script may find no transition."""
-        faulted = {
+        """The situations in which a run stops, whatever others could still do: somebody cannot do what he has begun, a
+        script may find no transition or raise an exception, or a channel would hold two messages."""
+        ends = self._full | self._raises
+        return self.halting | {
             node
-            for node, (*_, under_way) in enumerate(self.situations)
-            if any(left >= FOREVER // 2 for *_, left in under_way)
+            for node, (state, _, under_way) in enumerate(self.situations)
+            if state in ends or any(left >= FOREVER // 2 for *_, left in under_way)
         }
-        return faulted | self.halting
+
+    def may_raise(self) -> bool:
+        """Whether a condition of a script may raise an exception."""
+        return any(state in self._raises for state, *_ in self.situations)
+
+    def overfull(self) -> list[str]:
+        """The channels that may come to hold two messages, which stops the cell."""
+        marked = self.graph.marked
+        channels = self.graph.partition.channels
+        return [c.name for c in channels if any(m.get(c.place, 0) > 1 for m in marked)]
 
     def _late(self, node: int, ns: int) -> int:
         """ns: by how much what should have ended first there ends later, where so much time goes by."""
@@ -189,14 +205,6 @@ class Search:
         going = [left for *_, left in self.situations[node][2] if left < FOREVER // 2]
         return max(0, ns - min(going)) if going else 0
 
-    def around(self) -> list[int]:
-        """The elements of a repetition that takes time, from which an end can be reached."""
-        out = []
-        for node, target in zip(self.cycle, [*self.cycle[1:], *self.cycle[:1]], strict=True):
-            marks = [mark for to, _, mark in self.successors[node] if to == target]
-            out.append(max(marks))
-        return [m for m in out if m >= 0]
-
     def elements(self, path: TimedPath) -> list[int]:
         """What occurs on a path."""
         return [mark for _, mark in path.arcs if mark >= 0]
@@ -205,6 +213,8 @@ class Search:
 
     def _after(self, node: int) -> list[Arc]:
         state, stands, under_way = self.situations[node]
+        if state in self._full:
+            return []  # whoever has written the second message has stopped the cell
         is_over = state in self.graph.over
         busy = {owner: element for owner, element, _ in under_way}
         at_once: list[tuple[int, int]] = []
@@ -244,6 +254,11 @@ class Search:
         is_last = not is_over and any(target in self.graph.over for _, target in at_once)
         for owner in begins if is_last else mixed & begins.keys():
             out += self._begun(node, {owner: begins[owner]})
+        # What takes no time is among all that happens at this instant.
+        for owner, choices in begins.items() if at_once and not is_last else ():
+            timeless = [choice for choice in choices if choice[1].ns == 0]
+            if timeless and owner not in mixed:
+                out += self._begun(node, {owner: timeless})
         if not ticks and self._calm not in self.graph.marked[state]:
             ticks = [(BEGINS, state)]  # no time stamp lies ahead
         now = [u for u in under_way if u[2] == 0]

@@ -42,3 +42,8 @@ def kinds(graph: CellGraph) -> list[Kind]:
 def stops(graph: CellGraph) -> frozenset[int]:
     """The states in which a script has stopped the cell."""
     return frozenset(i for i, m in enumerate(graph.marked) if graph.running.stopped in m)
+
+
+def raises(graph: CellGraph) -> frozenset[int]:
+    """The states in which a condition of a script may have raised an exception, which stops the cell."""
+    return frozenset(i for i, m in enumerate(graph.marked) if graph.running.unsure in m)

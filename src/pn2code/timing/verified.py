@@ -20,20 +20,23 @@ from typing import Any
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.graph import Element
 from pn2code.geometry.runs import write
 from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.token_game import Game
-from pn2code.timing.answers import Cycle, Layout, between, seconds_down, seconds_up
+from pn2code.semantics.game.errors import running
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.timing.answers import Cycle, Layout, seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
 from pn2code.timing.look import AT_ONCE, CLOCK_RUNS, PLANNED, Measured, Times, look
 from pn2code.timing.own_work import by_own_work
 from pn2code.timing.search import TIE, Search
-from pn2code.timing.waits import Is, Wait, longest_wait, seen_wait, way_to
+from pn2code.timing.too_long import WHY, Shown, seen_too_long, too_long, why_open
+from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
-from pn2code.verify.answers.properties import Answer, Evidence, Verdict
+from pn2code.verify.answers.properties import Answer, Evidence
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.answers.run_names import run_names
 from pn2code.verify.controller.control_types import Control
@@ -41,10 +44,6 @@ from pn2code.verify.exploring.limits import Limits
 
 AT_MOST = "no command takes more than its planned time, and messages and the supervisor none (docs/time.md)"
 NO_FAULT = "no fault stops a run"
-_WHY = {
-    "idle": "something that takes no time can go on for ever before it",
-    "ends": "the cell can come to its end before it",
-}
 
 
 @frozen(eq=False)
@@ -66,7 +65,8 @@ class Durations:
                 out.append(f"{where}cycle: not known: {c.why}{_bounds(c)}")
             for e in c.endings if not c.why else ():
                 best = "not known" if e.least is None else f"{seconds_down(e.least)} s"
-                worst = "no limit" if e.most is None else f"{seconds_up(e.most)} s"
+                no_most = "no limit" if c.repeats or c.late else "not known"
+                worst = no_most if e.most is None else f"{seconds_up(e.most)} s"
                 seconds = f"{best} to {worst}"
                 if c.late:
                     seconds = f"not known, as answers may be too late; if none were: {seconds}"
@@ -101,6 +101,8 @@ def with_durations(
         d: gets the errors.
     """
     measured: list[Measured] = []
+    answers: list[Answer] = []
+    times: Times | None = None
     try:
         with limits.deadline.enforced():
             program = None if control is None else control.program
@@ -108,13 +110,16 @@ def with_durations(
             if times is None:
                 return None
             judge = _Judge(control, opened, asked, times, measured, folder)
-            answers = tuple(judge.answer(a) for a in said.answers)
+            for a in said.answers:
+                answers.append(judge.answer(a))
     except TimeIsOverError:
-        times = Times((), 0.0, clause("seconds"))
-        answers = tuple(
-            replace(a, why=clause("seconds")) if is_timed(a) else a for a in said.answers
-        )
-    said = replace(said, answers=answers, durations=Durations(times))
+        # What was found out by then stays known.
+        config = opened.config
+        timeout = config.supervisor.reply_timeout_s if config is not None else 0.0
+        times = times or Times((), timeout, clause("seconds"))
+        for a in said.answers[len(answers) :]:
+            answers.append(replace(a, why=clause("seconds")) if is_timed(a) else a)
+    said = replace(said, answers=tuple(answers), durations=Durations(times))
     return said if control is None else weighed(said, control.premises, times)
 
 
@@ -143,17 +148,26 @@ class _Judge:
         self.control, self.opened, self.asked = control, opened, asked
         self.times, self.measured, self.folder = times, measured, folder
 
+    @property
+    def _overflow(self) -> str:
+        """Why no run is known to come so far; "": nothing is why."""
+        found = self.control.overflow if self.control is not None else ""
+        return found and f"a run may stop before it: {found}"
+
     def answer(self, a: Answer) -> Answer:
         """The answer in seconds; another one stays as it is."""
         if not is_timed(a):
             return a
         if self.times.why:
             return replace(a, why=self.times.why)
-        found = [self._in(a, number) for number in range(len(self.measured))]
-        for kind in ("no", "inconclusive"):
-            for one in found:
-                if one.answer == kind:
-                    return one
+        found: list[Answer] = []
+        for number in range(len(self.measured)):
+            found.append(self._in(a, number))
+            if found[-1].answer == "no":
+                return found[-1]  # with its run, which that of another layout would replace
+        for one in found:
+            if one.answer == "inconclusive":
+                return one
         weakest = max(found, key=lambda x: PLANNED in x.assumes)
         return replace(weakest, value=max(x.value or 0.0 for x in found))
 
@@ -168,18 +182,20 @@ class _Judge:
             return Answer(a.about, "inconclusive", where + why, cell=True)
 
         cycle = layout.cycle
-        first, second = self._event(one, asked.first), self._event(one, asked.second)
-        if first is None or second is None:
-            return open_("of events with durations only `fires(..)` is looked at")
+        first, second = self._event(a, one, asked.first), self._event(a, one, asked.second)
+        for event in (first, second):
+            if isinstance(event, str):
+                return open_(event)
+        assert not isinstance(first, str) and not isinstance(second, str)
         limit = math.floor(float(asked.time) * NS)
         search = one.search
         if cycle.why:
             found = open_(cycle.why)
             if cycle.bounded is not None:
                 found = self._bounded(a, one, layout, (first, second), limit)
-            seen = seen_too_long(search, first, second, limit)
-            if seen is not None:
-                return self._shown(a, one, seen, "no", None)
+            shown = seen_too_long(one, first, second, limit)
+            if shown is not None:
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
             own = None if cycle.late else self._by_own_work(a, one, (first, second), limit)
             if own is None or found.answer == "yes":
                 return found
@@ -188,18 +204,11 @@ class _Judge:
             return found if cycle.bounded is not None else open_(f"{cycle.why}; {own}")
         over = _over(search, second)
         wait = longest_wait(search.successors, first, second, over | search.ends, over)
-        if wait.ns is None:
-            stops = _stops(search)
-            if wait.why in _WHY or (wait.why == "never" and stops):
-                return open_(_WHY.get(wait.why) or f"a run may stop before it: {stops[0]}")
-            shown = self._too_long(a, one, wait, (first, second), limit)
-            return shown or open_(f"a run may stop before it: {stops[0]}")
-        if wait.ns + TIE > limit:
-            surely, its = surely_waited(search, wait, first, second)
-            if surely - TIE > limit:
-                shown = self._too_long(a, one, replace(its, ns=surely), (first, second), limit)
-                return shown or open_(f"a run may stop before it: {_stops(search)[0]}")
-            return open_(f"the longest wait takes {between(surely, wait.ns)}")
+        if wait.ns is None or wait.ns + TIE > limit:
+            shown = too_long(one, wait, (first, second), limit, over)
+            if shown is not None:
+                return open_(self._overflow) if self._overflow else self._shown(a, one, shown)
+            return open_(why_open(one, cycle, wait, (first, second), limit))
         others = [self.control.stops] if self.control is not None and self.control.stops else []
         others += layout.cycle.ends
         if others:
@@ -208,20 +217,11 @@ class _Judge:
         slow = Wait(None, "open")
         if not anyhow.why and anyhow.adds_up:
             slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
-        is_kept = slow.ns is not None and slow.ns + TIE <= limit
+        is_kept = (
+            slow.ns is not None and slow.ns + TIE <= limit and anyhow.never_stops(one.runs.latest)
+        )
         clock = [CLOCK_RUNS] if search.graph.partition.net.timed else []
         return self._yes(a, wait, AT_MOST if is_kept else PLANNED, *clock)
-
-    def _too_long(
-        self, a: Answer, one: Measured, wait: Wait, events: tuple[Is, Is], limit: int
-    ) -> Answer | None:
-        """With the run of a wait that is too long; of another one, if that run stops before; None: all of them do."""
-        way = [wait.before, *(node for node, _ in wait.way[:-1])]
-        is_reached = path_before(one.search, wait) is not None
-        if is_reached and one.search.stopped().isdisjoint(way):
-            return self._shown(a, one, wait, "no", wait.ns)
-        seen = waited_too_long(one.search, *events, limit)
-        return None if seen is None else self._shown(a, one, seen, "no", None)
 
     def _yes(self, a: Answer, wait: Wait, *assumes: str) -> Answer:
         assert wait.ns is not None
@@ -264,108 +264,51 @@ class _Judge:
         if wait is None:
             return None
         if wait.ns is None:
-            return f"in some order of commands {_WHY[wait.why]}" if wait.why in _WHY else None
+            return f"in some order of commands {WHY[wait.why]}" if wait.why in WHY else None
         if wait.ns + TIE > limit:
             return f"no wait is longer than {seconds_up(wait.ns)} s"
         in_time = control.premises.replies.premise
         return self._yes(a, wait, AT_MOST, *([in_time] if in_time else []))
 
-    def _event(self, one: Measured, f: m.Formula) -> Is | None:
-        """Whether an element is the event; None: the event is not one of steps alone."""
+    def _event(self, a: Answer, one: Measured, f: m.Formula) -> Is | str:
+        """Whether an element is the event; in words why that is not known."""
         graph = one.search.graph
         atoms = list(m.atoms(f))
         if any(x.kind not in ("fires", "fires so") for x in atoms) or not _is_or(f):
-            return None
+            return "of events with durations only `fires(..)` is looked at"
         game = Game(graph.partition.net, graph.storage, files=Files(None))
-        known: dict[int, bool] = {}
+        try:
+            with running(a.about.origin, "its condition on a binding"):
+                found = {
+                    e.number
+                    for e in graph.elements
+                    if not e.is_step
+                    and e.owner >= 0
+                    and any(self._is(x, game, one, e) for x in atoms)
+                }
+        except GameError as problem:
+            return problem.message
+        return found.__contains__
 
-        def is_one(mark: int) -> bool:
-            if mark < 0:
-                return False
-            if mark not in known:
-                e = graph.elements[mark]
-                known[mark] = not e.is_step and e.owner >= 0 and any(
-                    self._is(x, game, one, mark) for x in atoms
-                )  # fmt: skip
-            return known[mark]
-
-        return is_one
-
-    def _is(self, atom: m.Atom, game: Game, one: Measured, mark: int) -> bool:
-        graph = one.search.graph
-        e = graph.elements[mark]
+    def _is(self, atom: m.Atom, game: Game, one: Measured, e: Element) -> bool:
         if atom.kind == "fires":
             return atom.number == e.transition
         condition = self.asked.steps[atom.number]
         if condition.transition != e.transition:
             return False
-        return game.evaluator.value(condition.exp, graph.binding(e)) is True
+        return game.evaluator.value(condition.exp, one.search.graph.binding(e)) is True
 
-    def _shown(
-        self, a: Answer, one: Measured, wait: Wait, verdict: Verdict, ns: int | None
-    ) -> Answer:
-        """With the run of the longest wait, or of one that has no end."""
-        search = one.search
-        path = path_before(search, wait)
-        assert path is not None, "what is shown is a run"
-        elements = [x for _, x in path if x >= 0]
-        elements += [x for _, x in wait.way if x >= 0]
+    def _shown(self, a: Answer, one: Measured, shown: Shown) -> Answer:
+        """With the run of a wait that is too long, or that has no end."""
+        elements = [x for _, x in (*shown.before, *shown.wait.way) if x >= 0]
         name = run_names(p.name for p in self.asked.properties)[a.about.name]
         file = self.folder / f"{stem(self.opened)}.{name}.trace.jsonl"
-        run = write(search.graph, elements, (), file, self.opened.initial)
+        run = write(one.search.graph, elements, (), file, self.opened.initial)
         evidence = None if run.file is None else Evidence(run.file, run.steps, None)
-        value = None if ns is None else max(0, ns - TIE) // (NS // 1000) / 1000
+        value = None if shown.ns is None else max(0, shown.ns - TIE) // (NS // 1000) / 1000
         return Answer(
-            a.about, verdict, "", evidence, value=value, cell=True, assumes=(PLANNED,)
+            a.about, "no", "", evidence, value=value, cell=True, assumes=(PLANNED,)
         )  # fmt: skip
-
-
-def _stops(search: Search) -> list[str]:
-    """Why a run may stop."""
-    return [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
-
-
-def path_before(search: Search, wait: Wait) -> list[tuple[int, int]] | None:
-    """A way to where a wait begins (node and mark of each arc) on which no run stops; None: there is none."""
-    stopped = search.stopped()
-    if not stopped:
-        return search.path_to(wait.before)
-    arcs = [() if node in stopped else x for node, x in enumerate(search.successors)]
-    return way_to(arcs, {wait.before})
-
-
-def surely_waited(search: Search, wait: Wait, first: Is, second: Is) -> tuple[int, Wait]:
-    """ns: some run waits no less, whatever ends before what it is a tie with; and the wait of this run.
-
-    Args:
-        wait: the longest one, where such ties may add up.
-    """
-    assert wait.ns is not None
-    held_up = search.held_up(wait.way[0][0], wait.way[1:]) if wait.way else 0
-    if not held_up:
-        return wait.ns, wait
-    found = longest_wait(search.surely(), first, second, ())
-    if found.ns is None or found.ns < wait.ns - held_up:
-        return wait.ns - held_up, wait
-    return found.ns, found
-
-
-def seen_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | None:
-    """Where a limit has ended the search: how some run waits for longer than `limit` (ns) in what was seen.
-
-    None: none was seen, or not only a limit is why not all is known.
-    """
-    if search.why not in ("situations", "time") or search.doings.why or search.doings.stops:
-        return None
-    return waited_too_long(search, first, second, limit)
-
-
-def waited_too_long(search: Search, first: Is, second: Is, limit: int) -> Wait | None:
-    """How some run waits for longer than `limit` (ns) before it ends or is stopped; None: none does."""
-    over = {i for i, (state, *_) in enumerate(search.situations) if state in search.graph.over}
-    wait = seen_wait(search.surely(), first, second, over | search.ends | search.stopped())
-    is_longer = wait.why == "repeats" or (wait.ns is not None and wait.ns - TIE > limit)
-    return wait if is_longer else None
 
 
 def _bounds(cycle: Cycle) -> str:

@@ -114,6 +114,22 @@ def seen_wait(
     return longest_wait(part, first, lambda m: m == _LEFT or second(m), (), may_idle=True)
 
 
+def lost_wait(
+    successors: Sequence[Sequence[Arc]], first: Is, second: Is, lost: Collection[int]
+) -> Wait | None:
+    """How one comes to one of these nodes, after an event and without one of the other kind; None: one does not."""
+    begun = _begun(successors, first)
+    graph: list[list[Arc]] = [[(node + 1, 0, -1) for node in begun]]
+    graph += [[(to + 1, ns, m) for to, ns, m in arcs if not second(m)] for arcs in successors]
+    there = way_to(graph, {node + 1 for node in lost})
+    if there is None:
+        return None
+    node = there[0][0] - 1
+    before, mark = begun[node]
+    after = [(n - 1, m) for n, m in there[1:]]
+    return Wait(None, "never", before, ((node, mark), *after))
+
+
 def waiting(successors: Sequence[Sequence[Arc]], first: Is, second: Is) -> tuple[int, ...]:
     """All nodes in which the second event is waited for after the first."""
     return _until(successors, _begun(successors, first), second)

@@ -48,7 +48,7 @@ def put(room: Path, files: Sequence[OutputFile]) -> None:
     for folder in sorted({f.path.rpartition("/")[0] for f in files}):
         (room / folder).mkdir(parents=True, exist_ok=True)
     for f in files:
-        with open(f"{room}/{f.path}", "w", encoding="utf-8") as file:  # noqa: PTH123
+        with open(f"{room}/{f.path}", "w", encoding="utf-8") as file:  # noqa: PTH123 - for each file
             file.write(f.text)
 
 

@@ -13,51 +13,29 @@ time: what depends on a drawn number is then taken as recorded (`unknown`), all 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
-from pn2code.ml.core.reals import may_hold_reals
-from pn2code.ml.core.terms import Symbol
-from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.effects import Effects, outside
 from pn2code.semantics.evaluation.references import References
-from pn2code.semantics.game.enabling import Demand
 from pn2code.semantics.game.errors import GameError, GivenUpError
 from pn2code.semantics.game.marking import (
-    Binding,
-    BindingElement,
     Marking,
     place_text,
-    variable_text,
 )
 from pn2code.semantics.game.partial_marking import (
     EXACT,
-    PartialMarking,
-    alternatives,
     counted,
     final_difference,
-    taken,
-    without_delay,
 )
 from pn2code.semantics.game.report import PlaceRow, places, time_text
-from pn2code.semantics.game.token_game import Game, reset
-from pn2code.semantics.values.colour_text import read_value
-from pn2code.semantics.values.data import Value
-from pn2code.semantics.values.multiset import TimedMultiSet
-from pn2code.trace.followed import EnabledBinding, Followed, State
-from pn2code.trace.recording import RecordedStep, Recording, TransitionNames
+from pn2code.semantics.game.token_game import Game
+from pn2code.trace.followed import Followed, State
+from pn2code.trace.outside_values import RefusedError, on_one_line
+from pn2code.trace.recording import Recording, TransitionNames
+from pn2code.trace.replay_step import Stepping
 
 MOST_STATES = 50
 """States that are carried along; of more, the first are."""
-MOST_MARKINGS = 4
-"""Ways to take the tokens of one binding that are followed."""
-
-
-class _Refused(Exception):  # noqa: N818
-    """A step cannot be repeated in a state; the message says why."""
 
 
 def follow(run: Recording, game: Game) -> Followed:
@@ -75,41 +53,14 @@ def follow(run: Recording, game: Game) -> Followed:
     return _Follower(game, effects, references, lenient=True).follow(run)
 
 
-class _Follower:
+class _Follower(Stepping):
     """Carries states along a recording."""
 
     def __init__(
         self, game: Game, effects: Effects, references: References, *, lenient: bool
     ) -> None:
-        self.game = game
-        self.net: FlatNet = game.net
-        self.effects = effects
-        self.lenient = lenient
+        super().__init__(game, effects, references, lenient=lenient)
         self.names = TransitionNames(game.net)
-        self.references = references
-        self.real_time = game.net.real_time
-        self.final_tokens: dict[int, dict[str, int]] = {}
-
-    # --- what is drawn -----------------------------------------------------------------------------
-
-    def nature(self) -> str:
-        """In words: in what way the net depends on more than itself."""
-        found = self.effects.of(*texts(self.net))
-        return " and ".join(
-            words
-            for effect, words in (
-                (Effect.DRAW, "draws random numbers"),
-                (Effect.LOOK, "depends on files or clocks"),
-            )
-            if effect in found
-        )
-
-    def vague(self, unknown: PartialMarking, *parts: Any) -> bool:
-        """Whether the values of these expressions cannot be known."""
-        if not self.lenient:
-            return False
-        found = self.effects.of(*parts)
-        return bool(found & OUTSIDE) or (unknown.references and Effect.READ in found)
 
     def start(self) -> State:
         marking, unknown = self.game.marking, EXACT
@@ -117,8 +68,6 @@ class _Follower:
             if p.initial and self.vague(EXACT, p.initial[0]):
                 marking, unknown = unknown.forget(marking, p.index)
         return State(self.game.with_references(marking), unknown, self.references.contents())
-
-    # --- the run -------------------------------------------------------------------------------------
 
     def follow(self, run: Recording) -> Followed:
         self.final_tokens = self.tokens_of(run)
@@ -139,7 +88,7 @@ class _Follower:
                     try:
                         for found in self.step(state, t, step):
                             after[found] = None
-                    except (_Refused, GameError) as refused:
+                    except (RefusedError, GameError) as refused:
                         reasons[str(refused)] = None
                         given_up = given_up or isinstance(refused, GivenUpError)
             if not after:
@@ -198,7 +147,10 @@ class _Follower:
                     continue
             if ours != recorded:
                 name = self.net.places[index].name
-                return state, f"place `{name}` holds {_line(ours)}, not {_line(recorded)}"
+                return (
+                    state,
+                    f"place `{name}` holds {on_one_line(ours)}, not {on_one_line(recorded)}",
+                )
         return state, ""
 
     def last(self, state: State, time: str) -> Marking:
@@ -264,281 +216,6 @@ class _Follower:
             if key in covered and key in run.final_marking:
                 row["marking"] = run.final_marking[key]
         return rows
-
-    # --- a step ----------------------------------------------------------------------------------------
-
-    def step(self, state: State, t: FlatTransition, step: RecordedStep) -> Iterator[State]:
-        """The states after an occurrence; raises _Refused when there is none.
-
-        Inscriptions see `step ()` as it was while the occurrence was looked for, and counted while it occurs.
-        """
-        evaluator = self.game.evaluator
-        done = evaluator.steps
-        self.references.restore(state.references)
-        self.check_names(t, step)
-        state = self.at_time(state, step.time)
-        self.check_priority(state, t)
-        reason = ""
-        count = 0
-        for enabled in self.enabled(state, t, step):
-            evaluator.steps = done + 1
-            try:
-                after = self.occur(state, t, enabled, step)
-            except GivenUpError:
-                raise
-            except (_Refused, GameError) as refused:
-                reason = reason or str(refused)
-                continue
-            finally:
-                evaluator.steps = done
-            count += 1
-            yield after
-        if not count:
-            raise _Refused(reason or self.why_disabled(state, t, step))
-
-    def check_names(self, t: FlatTransition, step: RecordedStep) -> None:
-        ours = {s.name for s in t.variables}
-        for name in sorted(set(step.binding) - ours):
-            raise _Refused(f"the binding has `{name}`, which is no variable of the transition")
-        for name in sorted(ours - set(step.binding)):
-            raise _Refused(f"the binding lacks variable `{name}`")
-
-    def at_time(self, state: State, time: str) -> State:
-        """The state when the clock shows the recorded time."""
-        now = state.marking.time
-        if not self.net.timed or not time or time_text(now) == time:
-            return state
-        settled = self.game.advance_time(state.marking)
-        if time_text(settled.time) == time:
-            return replace(state, marking=settled)
-        said = f"it is recorded at time {time}, but the clock shows {time_text(settled.time)}"
-        if not state.unknown.anything:
-            raise _Refused(said)
-        value = _time(time, self.real_time)
-        if value is None or value < now:
-            raise _Refused(f"time goes back, from {time_text(now)} to {time}")
-        if self.real_time:
-            # Recorded with 12 digits: as late as a time can be that is printed like this.
-            value += 0.49 * 10.0 ** (math.floor(math.log10(value)) - 11) if value else 0.0
-            state = replace(state, unknown=replace(state.unknown, clock=True))
-        self.check_eager(state, settled, value, said)
-        return replace(state, marking=replace(state.marking, time=value))
-
-    def check_eager(self, state: State, settled: Marking, value: float, said: str) -> None:
-        """Time must not pass something that was certainly enabled before."""
-        if settled.time >= value or self.inhibiting():
-            return
-        self.references.restore(state.references)
-        for element in self.game.enabled_in(settled):
-            if self.certain(state.unknown, self.net.transitions[element.transition]):
-                raise _Refused(said)
-
-    def inhibiting(self) -> bool:
-        return any(a.kind is ArcKind.INHIBITOR for t in self.net.transitions for a in t.arcs)
-
-    def certain(self, unknown: PartialMarking, t: FlatTransition) -> bool:
-        """Whether tokens that are there enable the transition, whatever is drawn."""
-        arcs = [a.inscription for a in t.arcs if a.inscription and a.kind is not ArcKind.OUTPUT]
-        return not self.vague(unknown, t.guards, *(a.value for a in arcs))
-
-    def check_priority(self, state: State, t: FlatTransition) -> None:
-        if self.inhibiting() and state.unknown:
-            return
-        for other in self.net.transitions:
-            if other.priority >= t.priority or not self.certain(state.unknown, other):
-                continue
-            if next(self.game.enabling.enabled(other, state.marking), None) is not None:
-                raise _Refused(f"`{other.name}` has a higher priority and is enabled")
-
-    def enabled(
-        self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> Iterator[EnabledBinding]:
-        """The ways in which the recorded binding is enabled."""
-        enabling = self.game.enabling
-        found = False
-        if self.certain(state.unknown, t):
-
-            def fits(symbol: Symbol, value: Value) -> bool:
-                text = variable_text(self.game.colours, symbol, value)
-                return text == step.binding.get(symbol.name)
-
-            for binding in enabling.enabled(t, state.marking, accept=fits):
-                demands = enabling.demands(t, binding)
-                for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
-                    found = True
-                    yield EnabledBinding(left, state.unknown, binding)
-        depends = not self.certain(state.unknown, t)
-        if depends or (not found and self.lenient and state.unknown.anything):
-            yield self.enabled_by_unknown(state, t, step)
-
-    def plausible(self, markings: list[Marking]) -> list[Marking]:
-        """Some of the markings that may be left, with which the recorded final marking can still be reached.
-
-        Nothing that is put later has a stamp before the present time: what the final marking has of such tokens must
-        be there now. Which of the others are taken first makes no difference.
-        """
-        if len(markings) == 1:
-            return markings
-        return [m for m in markings if self.holds_final(m)][:MOST_MARKINGS] or markings[
-            :MOST_MARKINGS
-        ]
-
-    def holds_final(self, marking: Marking) -> bool:
-        for place, wanted in self.final_tokens.items():
-            tokens = marking.places[place]
-            if isinstance(tokens, TimedMultiSet):
-                colset = self.net.places[place].colset
-                held = counted(place_text(self.game.colours, colset, tokens), colset)
-                for text, count in wanted.items():
-                    stamp = _time(text.rpartition("@")[2], self.real_time)
-                    early = stamp is not None and stamp < marking.time
-                    if early and held.get(text, 0) < count:
-                        return False
-        return True
-
-    def enabled_by_unknown(
-        self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> EnabledBinding:
-        """As `enabled`, with tokens that are not known: the binding is read from its text."""
-        enabling = self.game.enabling
-        unknown = state.unknown
-        binding = self.read(t, step)
-        self.game.evaluator.now = state.marking.time
-        if not self.vague(unknown, t.guards):
-            reason = enabling.why_guard_fails(t, binding)
-            if reason:
-                raise _Refused(reason)
-        marking = state.marking
-        demands: list[Demand] = []
-        for n, arc in enumerate(t.arcs):
-            inhibits = arc.kind is ArcKind.INHIBITOR and not unknown.covers(arc.place)
-            if inhibits and enabling.inhibited(arc, marking):
-                raise _Refused(f"place `{self.net.places[arc.place].name}` inhibits it")
-            if arc.inscription is None or arc.kind not in (ArcKind.INPUT, ArcKind.BOTH):
-                continue
-            if self.vague(unknown, arc.inscription.value):
-                marking, unknown = unknown.forget(marking, arc.place)
-            else:
-                demands += enabling.demands(t, binding, only=n)
-        left = taken(enabling, self.game.colours, marking, unknown, demands)
-        if isinstance(left, Demand):
-            raise _Refused(enabling.shortage(marking, left, demands))
-        return EnabledBinding(*left, binding, read=True)
-
-    def read(self, t: FlatTransition, step: RecordedStep) -> dict[Symbol, Value]:
-        """The recorded values of the variables that are not outputs of the code segment."""
-        outputs = t.code.outputs if t.code else ()
-        return {s: self.read_one(s, step) for s in t.variables if s not in outputs}
-
-    def read_one(self, symbol: Symbol, step: RecordedStep) -> Value:
-        assert symbol.colset is not None, "a net variable has a colour set"
-        text = step.binding[symbol.name]
-        value = read_value(symbol.colset, text, real_time=self.real_time)
-        if value is None:
-            raise _Refused(f"`{symbol.name}` = {_line(text)} is no value of `{symbol.colset.name}`")
-        return value
-
-    def why_disabled(self, state: State, t: FlatTransition, step: RecordedStep) -> str:
-        """Why a binding is not enabled, in words."""
-        element = BindingElement.make(t, self.read(t, step))
-        found = self.game.why_disabled(state.marking, element)
-        return f"not enabled: {found}" if found else "not enabled with this binding"
-
-    # --- an occurrence -----------------------------------------------------------------------------------
-
-    def occur(
-        self, state: State, t: FlatTransition, enabled: EnabledBinding, step: RecordedStep
-    ) -> State:
-        """The state after the occurrence."""
-        game = self.game
-        unknown, now = enabled.unknown, enabled.left.time
-        self.references.restore(state.references)
-        game.evaluator.now = now
-        action = t.code.action if t.code else None
-        full = {**enabled.binding, **self.outputs(unknown, t, enabled.binding, step)}
-        drawn = self.vague(unknown, action)
-        # Reals are printed with fewer digits than they have.
-        printed = {s for s in t.variables if self.is_rounded(s)} if enabled.read or drawn else set()
-        unknown = self.remember(unknown, drawn, action)
-        late = unknown.clock or self.vague(unknown, t.delay)
-        delay = 0 if late else game.delay(t, full)
-        held = list(enabled.left.places)
-        for arc in t.arcs:
-            if arc.inscription is None or arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
-                continue
-            drawn = self.vague(unknown, arc.inscription.value)
-            rounded = bool(printed and printed & variables(arc.inscription.value))
-            tokens = without_delay(arc) if drawn and not rounded else None
-            if tokens and tokens.inscription and not self.vague(unknown, tokens.inscription.value):
-                # Which tokens they are is known; when they are available is drawn.
-                put = game.put(TimedMultiSet(), tokens, full, 0, now)
-                assert isinstance(put, TimedMultiSet)
-                unknown = unknown.with_late(arc.place, put.untimed())
-                unknown = self.remember(unknown, drawn, arc.inscription.value)
-            elif rounded or drawn:
-                unknown = unknown.opened(arc.place)
-                unknown = self.remember(unknown, drawn, arc.inscription.value)
-            elif late and self.net.places[arc.place].colset.timed:
-                put = game.put(TimedMultiSet(), arc, full, 0, now)
-                assert isinstance(put, TimedMultiSet)
-                unknown = unknown.with_late(arc.place, put.untimed())
-            else:
-                held[arc.place] = game.put(held[arc.place], arc, full, delay, now)
-        for arc in t.arcs:
-            if arc.kind is ArcKind.RESET:
-                held[arc.place] = reset(held[arc.place], now)
-                if unknown.covers(arc.place):
-                    unknown = unknown.opened(arc.place)
-        after = replace(enabled.left, places=tuple(held))
-        path = (state.path, (now, BindingElement.make(t, full)))
-        return State(self.game.with_references(after), unknown, self.references.contents(), path)
-
-    def is_rounded(self, s: Symbol) -> bool:
-        return may_hold_reals(s.type, self.net.program.datatypes)
-
-    def remember(self, unknown: PartialMarking, drawn: bool, *parts: Any) -> PartialMarking:
-        """Evaluating something that is drawn may have put drawn values into references."""
-        if drawn and Effect.WRITE in self.effects.of(*parts):
-            return replace(unknown, references=True)
-        return unknown
-
-    def outputs(
-        self, unknown: PartialMarking, t: FlatTransition, binding: Binding, step: RecordedStep
-    ) -> dict[Symbol, Value]:
-        """The outputs of the code segment: ours if they are as recorded, else the recorded ones if they are drawn."""
-        if t.code is None:
-            return {}
-        vague = self.vague(unknown, t.code.action)
-        try:
-            ours = self.game.action(t, binding)
-        except GameError:
-            if not vague:
-                raise
-            ours = {}
-        found: dict[Symbol, Value] = {}
-        for s in t.code.outputs:
-            text = variable_text(self.game.colours, s, ours[s]) if s in ours else None
-            if text == step.binding[s.name]:
-                found[s] = ours[s]
-            elif vague:
-                found[s] = self.read_one(s, step)
-            else:
-                raise _Refused(
-                    f"the code segment gives `{s.name}` = {_line(text or '')}, "
-                    f"recorded is {_line(step.binding[s.name])}"
-                )
-        return found
-
-
-def _time(text: str, real: bool) -> int | float | None:
-    try:
-        return float(text.replace("~", "-")) if real else int(text.replace("~", "-"))
-    except ValueError:
-        return None
-
-
-def _line(text: str) -> str:
-    return " ".join(text.split())
 
 
 def _list(names: tuple[str, ...]) -> str:

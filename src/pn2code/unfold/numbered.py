@@ -16,7 +16,8 @@ from typing import Any
 
 from pn2code.ml.core.terms import Con, Exp, If, RecordExp, Var
 from pn2code.ml.core.types import TRecord
-from pn2code.semantics.evaluation.evaluate import Evaluator, variables
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.values.data import Data, Value
 
 Environment = list[int]
@@ -51,6 +52,7 @@ class Numbers:
         if type(value) is tuple:
             return self.record(tuple(map(self.of, value)))
         kind = type(value)
+        # What is a `Data` has an argument.
         if kind not in (bool, int, str) and not (kind is Data and value.argument is None):  # type: ignore[union-attr]
             raise NotNumberedError
         key = kind, value  # True is not 1

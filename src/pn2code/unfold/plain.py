@@ -39,7 +39,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Form,
 )
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Data, MlException, MlLimit, Value
@@ -447,6 +447,7 @@ class _Closure:
                     s.colset, [self.numbers.values[n] for n in numbers]
                 )
                 ranks.append({self.numbers.of(value): k for k, value in enumerate(values)})
+            # The default keeps the ranks of this round.
             elements.sort(key=lambda e, r=ranks: [x[n] for x, n in zip(r, e.found, strict=True)])  # type: ignore[misc]
         return [e for elements in by_transition.values() for e in elements]
 

@@ -22,7 +22,8 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import PVar, Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.evaluate import Evaluator, match
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.evaluation.matching import match
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.errors import GameError, NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking
@@ -46,17 +47,19 @@ def unfold(
     *,
     max_places: int = MAX_PLACES,
     max_transitions: int = MAX_TRANSITIONS,
+    with_code: bool = False,
     progress: Callable[[int, int], None] = lambda places, transitions: None,
 ) -> Unfolding | None:
     """The net as a place/transition net; None after an error.
 
-    `progress` is told how many places and transitions there are, for each binding that is looked at.
+    `progress` is told how many places and transitions there are, for each binding that is looked at. `with_code`: a
+    code segment is computed with the values of its binding, where nothing else decides what it gives.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
     before = len(d.errors)
-    check(net, d)
+    check(net, d, with_code=with_code)
     if len(d.errors) > before:
         return None
     game = Game(net)
@@ -81,8 +84,8 @@ def unfold(
     return closure.result()
 
 
-def check(net: FlatNet, d: Diagnostics) -> None:
-    """Report what a place/transition net cannot have as errors."""
+def check(net: FlatNet, d: Diagnostics, *, with_code: bool = False) -> None:
+    """Report what a place/transition net cannot have as errors; `with_code` as for `unfold`."""
     hint = "verify the net itself instead"
     for p in net.places:
         if p.colset.timed:
@@ -94,7 +97,7 @@ def check(net: FlatNet, d: Diagnostics) -> None:
                 hint=hint,
             )
     for t in net.transitions:
-        if t.code is not None:
+        if t.code is not None and not with_code:
             d.error(
                 UNSUPPORTED_UNFOLDING,
                 f"transition `{t.name}` has a code segment",
@@ -109,6 +112,8 @@ def check(net: FlatNet, d: Diagnostics) -> None:
 
 
 def _inscriptions(t: FlatTransition) -> Iterator[tuple[Any, Origin]]:
+    if t.code is not None:
+        yield t.code.action, t.code.origin
     for g in t.guards:
         yield g, t.origin
     for arc in t.arcs:
@@ -294,10 +299,11 @@ class _Closure:
             element = self.ready.popleft()
             t = element.t
             try:
+                binding = {**element.binding, **self.game.action(t, element.binding)}
                 for arc in t.arcs:
                     if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
                         continue
-                    put = self.game.put(MultiSet(), arc, element.binding, 0, 0)
+                    put = self.game.put(MultiSet(), arc, binding, 0, 0)
                     assert isinstance(put, MultiSet)
                     for value, n in put.counts.items():
                         token = arc.place, value

@@ -14,6 +14,7 @@ from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.codes import TIME_OVER, TRACE_UNWRITABLE
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.not_looked import not_looked
 from pn2code.verify.controller.poses import Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.proofs import declared
@@ -59,7 +60,7 @@ def look(
     if is_partial and (found.why == "interrupted" or limits.deadline.is_over()):
         poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
         capacities = declared(partition, config, d)
-        return control.not_looked(found.why, partition, capacities, found, poses, bounds)
+        return not_looked(found.why, partition, capacities, found, poses, bounds)
     cut = ""
     if is_partial and found.why != "error" and not opened.flat.timed:
         # All of it will not be seen either, but what is wrong in a part is wrong.

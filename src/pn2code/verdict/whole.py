@@ -239,7 +239,7 @@ def look(
     if found is None:
         return None
     if may_unfold:
-        found = unfolded.look(opened, asked, found, limits, own_options or options, d)
+        found = unfolded.look(opened, asked, found, limits, own_options or options)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
     control: Control | None = None
@@ -263,7 +263,7 @@ def look(
 
 def _may_unfold(opened: OpenNet, limits: Limits) -> bool:
     """Whether the unfolded net of a net may be asked where a limit ends its exploration."""
-    if opened.config is not None or limits.approximation is not None:
+    if opened.config is not None or limits.approximation is not None or not limits.unfolds:
         return False
     with suppress(TimeIsOverError), limits.deadline.enforced():
         return limits.deadline.left is None or not unfolded.why_not(opened.flat)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import threading
 import time
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -38,6 +40,43 @@ def test_nothing_is_written_where_nobody_looks() -> None:
     assert hidden.getvalue() == pipe.getvalue() == ""
 
 
+def test_a_run_says_how_fast_its_time_goes_by(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, stream = 100.0, Terminal()
+    robot = SimpleNamespace(name="arm", motion=None)
+    engine: Any = SimpleNamespace(now=0.5, activity="", robots=[robot])
+    with Progress(Console(file=stream, force_terminal=True)) as line:
+        monkeypatch.setattr(line, "_clock", lambda: now)
+        line.begun(engine)
+        line.advanced(engine)
+        assert stream.getvalue().endswith("   0.50 s   arm: waits")
+        now, engine.now = 104.0, 30.0
+        line.advanced(engine)
+        assert stream.getvalue().endswith("  30.00 s, 7.5 s a second   arm: waits")
+
+
+def test_a_simulation_says_how_much_longer_it_takes_at_most() -> None:
+    now, stream = 100.0, Terminal()
+
+    def said(steps: int, seconds: float) -> str:
+        nonlocal now
+        now += seconds
+        line.update(steps, 0)
+        return stream.getvalue().rpartition("\x1b[K")[2]
+
+    with simulation.ProgressLine(stream=stream, steps=1000, clock=lambda: now) as line:
+        said(0, 5.0)
+        assert said(200, 2.0) == "200 steps   time 0   100 steps/s   8 s left at most"
+    with simulation.ProgressLine(stream=stream, steps=1000, runs=2, clock=lambda: now) as line:
+        said(0, 1.0)
+        said(1000, 10.0)
+        # The steps of the second run are counted anew: the rate was negative.
+        found = "run 2 of 2: 100 steps   time 0   100 steps/s   9 s left at most"
+        assert said(100, 1.0) == found
+    with simulation.ProgressLine(stream=stream, clock=lambda: now) as line:
+        said(0, 1.0)
+        assert said(100, 1.0) == "100 steps   time 0   100 steps/s"
+
+
 def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None:
     now, stream = 100.0, io.StringIO()
     with Line(stream=stream, first="reading", plain=True, clock=lambda: now) as line:
@@ -50,6 +89,19 @@ def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None
         line.stage("comparing")
         line.say("5 states")
     assert stream.getvalue() == "reading\n3 states\ncomparing\n"
+
+
+def test_a_patient_line_leaves_nothing_in_a_pipe_where_all_is_over_soon() -> None:
+    now, stream = 100.0, io.StringIO()
+    with simulation.ProgressLine(stream=stream, steps=9_000, clock=lambda: now) as line:
+        for steps in range(0, 6_000, 500):
+            line.update(steps, 0)
+            now += 1.0
+    assert stream.getvalue() == "5,000 steps   time 0   500 steps/s   8 s left at most\n"
+    with Line(stream=stream, plain=True, patient=True, clock=lambda: now) as line:
+        now += 9.0
+        line.say("1 state")
+    assert stream.getvalue().count("\n") == 1
 
 
 class Telling(Terminal):

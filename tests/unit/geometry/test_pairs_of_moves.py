@@ -16,6 +16,7 @@ from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.look import Look
 from pn2code.geometry.pieces import Front, Level, gaps
+from pn2code.geometry.progress import Meeting
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met
 from pn2code.geometry.tracks import ArmShape, Track
@@ -107,7 +108,7 @@ def test_depths_are_searched_for_one_of_each_two_robots_and_then_as_far_as_it_go
     robots = [("r", "s"), ("r", "s"), ("s", "t"), ("r", "s")]
     depths = [0.01, 0.03, 0.02, 0.025]
     meetings = [
-        look._Meeting(who, ("A", "B"), ("", f"does {i}"), touch(deep), Met(0, (0, 1)))
+        Meeting(who, ("A", "B"), ("", f"does {i}"), touch(deep), Met(0, (0, 1)))
         for i, (who, deep) in enumerate(zip(robots, depths, strict=True))
     ]
     for most, known in ((0, [1, 2]), (300, [1, 2, 3]), (6_000, [0, 1, 2, 3])):

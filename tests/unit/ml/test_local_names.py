@@ -107,8 +107,34 @@ def test_a_code_output_may_not_be_seen_in_the_guard() -> None:
     assert [e.code for e in found.errors] == ["code-output-bound"]
 
 
+OPENED = """
+net Opened
+  colset INT = int;
+  colset INTT = int timed;
+  var n, k : INT;
+  page Top
+    place A : INT = 1`1
+    place B : INTT {place}
+    trans T {trans}
+      in A : n
+      out B : {out}
+"""
+
+
 @pytest.mark.parametrize("text", ["let fun f x = x in f 1 end", "let open List in hd l end"])
 def test_declarations_that_keep_cpn_tools_from_checking(text: str) -> None:
     for arc, guard in ((f"out B : {text}", ""), ("", f"guard [{text} = 1]")):
         d = diagnose(NET.format(arc=arc, guard=guard))
         assert [w.code for w in d.items] == ["declaration-in-inscription"]
+
+
+def test_opening_keeps_cpn_tools_from_checking_whatever_the_inscription_is() -> None:
+    opening, other = "let open List in hd [1] end", "let fun open' x = x in open' 1 end"
+    for text, wanted in ((opening, ["declaration-in-inscription"]), (other, [])):
+        for place, trans in (
+            (f"= {text}", ""),
+            ("", f"code input (n); output (k); action {text};"),
+            ("", f"delay @+{text}"),
+        ):
+            net = OPENED.format(place=place, trans=trans, out="k" if "code" in trans else "n")
+            assert [w.code for w in diagnose(net).items] == wanted

@@ -301,7 +301,7 @@ def test_type_errors(text: str, expected: str | None) -> None:
     ("text", "hint"),
     [
         ("val x = lenght [1]", "did you mean `length`?"),
-        ("val x = inst ()", "it is the number of the page instance, which arcs, guards, delays, code segments and initial"),
+        ("val x = [inst]", "it is the number of the page instance, which arcs, guards, delays, code segments and initial"),
         ("val x = IOUtil.withInputFile (\"f\", fn x => x) 1", "in place of the standard streams"),
         ("val x = nth ([1], 0)", "it is called `List.nth`"),
         ("val x = 1`~5", "negative numbers after the backquote need parentheses: 1`(~5)"),

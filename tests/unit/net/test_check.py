@@ -298,7 +298,7 @@ def test_patterns() -> None:
         place E : COLOUR
         trans T
           in A : (n, ~1)
-          in B : {b = true, a = m}
+          in B : {b = b, a = m}
           in C : n :: [k, 3]
           in D : Ack(k)
           in E : red
@@ -313,7 +313,7 @@ def test_patterns() -> None:
     assert isinstance(items, PCon) and items.constructor.name == "::"
     assert inscription(t, 4).terms[0].pattern is None
     assert plan(t) == ["term 0.0", "term 2.0", "term 1.0"]
-    assert names(t) == ["k", "m", "n"]
+    assert names(t) == ["b", "k", "m", "n"]
 
 
 def test_timed_input_arcs() -> None:

@@ -11,7 +11,10 @@ from pn2code.robot.backend import Clearance
 from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.fake import FakeBackend
+from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import LedContacts
 from pn2code.robot.monitor import Monitor
+from pn2code.robot.robot_cell import ContactRule
 
 
 class Scripted(FakeBackend):
@@ -206,3 +209,23 @@ def test_what_stands_on_an_axis_of_a_device_that_moves_is_not_touched(monitor, b
     assert fault(found, {"mill/lift"}) is not None
     beside = replace(found, kind="scene", b="fence", second="")
     assert fault(beside, {"mill/lift"}) is None
+
+
+def test_a_part_in_a_tool_is_not_touched_by_a_door_that_moves(cell, backend, home):
+    """It can be put down on axes of devices; while a door closes on it that was permitted up to a millimetre deep."""
+    rule = ContactRule("*/box.*", "mill/door", 1e-3, "part")
+    monitor = Monitor(replace(cell, scene=replace(cell.scene, contacts=(rule,))), backend)
+    gap = Clearance("robots", "robot1", "robot1/box.1", "mill/door", -1e-4, 1e-3, second="mill")
+    backend.gaps = [gap]
+    fault = {
+        axis: monitor.check(0.0, home, kinds={"mill": "axis"}, turning={axis}).fault is not None
+        for axis in ("mill/door", "mill/lift")
+    }
+    assert fault == {"mill/door": True, "mill/lift": False}
+    led = LedContacts(monitor._cell)
+    going = MoveEnds(cell.robots[0], (), "", False, frozenset({"mill/door"}))
+    by_the_way = {
+        who: led.is_by_the_way(gap.a, gap.b, {who: going}.get, {}, home.__getitem__)
+        for who in ("mill", "other")
+    }
+    assert by_the_way == {"mill": True, "other": False}

@@ -25,11 +25,13 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import LedContact, LedContacts
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.part import Part, PartFault, carried_to
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.robot.zones import ZoneWatch
 from pn2code.run.record import PartRecord
 
@@ -409,3 +411,38 @@ def test_a_tool_without_a_place_is_not_left(tmp_path: Path) -> None:
     assert [e.message for e in d.errors] == [
         "`leaveDriver` uncouples tool `driver`, and it has no place"
     ]
+
+
+# --- what may touch -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("tool", "x", "z", "led"),
+    [
+        ("", 0.3, 0.75, (True, False)),
+        ("", 0.3, 0.77, (True, False)),  # the rest of the way is another line
+        ("", -0.3, 0.75, (False, False)),  # where the other one lies
+        ("", 0.31, 0.75, (False, False)),
+        ("gripper", 0.3, 0.75, (True, True)),
+        ("gripper", 0.0, 0.75, (False, False)),  # beside its place
+    ],
+)
+def test_a_coupling_touches_what_it_takes_and_a_tool_its_own_rack(
+    cell: RobotCell, tool: str, x: float, z: float, led: tuple[bool, bool]
+) -> None:
+    """They might touch any tool and any place of the rack, on any line, up to a millimetre deep."""
+    arm = RobotExecutor(cell.robot("arm"), cell.motion)
+    arm.begin(MoveJoint(pose_of(at(x, -0.9, 0.95)), tcp="coupling"), 0.0)
+    arm.finish()
+    arm.stand(arm.q, arm.T_base_tcp, tool)
+    path = arm.begin(MoveLinear(pose_of(at(x, -0.9, z)), tcp="coupling"), 0.0).trajectory
+    ends = MoveEnds.of(cell.robot("arm"), tool, path)
+    contacts = LedContacts(cell)
+    lying = contacts.between("arm/link_6", "gripper"), Parts(cell).present["gripper"]
+    held = contacts.between("arm/gripper", "rack"), None
+    assert lying[0] == LedContact("arm", "", "gripper") and held[0] == LedContact("arm", "", "rack")
+    home = np.array(cell.robot("arm").home)
+    assert led == tuple(
+        contact is not None and contacts.is_led(contact, ends, (None, part), lambda _name: home)
+        for contact, part in (lying, held)
+    )

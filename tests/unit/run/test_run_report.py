@@ -24,9 +24,9 @@ from pn2code.report.summary import KINDS, page, summarise
 from pn2code.robot.commands import MoveExternal, MoveHome, ToolAction
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.model import find_arm
-from pn2code.run.cell import _warn
 from pn2code.run.command_words import kind_and_label
 from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord, RunWarning
+from pn2code.run.run_warnings import warn
 
 ROBOTS = ("arm", "mill")
 
@@ -180,7 +180,7 @@ def test_warnings_say_how_deep_both_angles_and_what_each_time_is(record: RunReco
     arm = SimpleNamespace(name="arm", kinematics=kinematics)
     cell = SimpleNamespace(robot=lambda _: arm)
     config = SimpleNamespace(robots=[arm], report=ReportConfig(warn_condition=50.0))
-    _warn(record, config, cell)  # type: ignore[arg-type]
+    warn(record, config, cell)  # type: ignore[arg-type]
     said = [w.text for w in record.warnings]
     assert said[0] == (
         "comes close to a singularity for the first time; it is closest at 10.00 s: condition number 90, "

@@ -9,6 +9,7 @@ import pytest
 
 from helpers.netbuilder import flat
 from helpers.random_nets import random_net
+from pn2code.semantics.game.demands import Demands
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game, GameError
@@ -118,5 +119,5 @@ def test_a_full_place_is_not_copied_for_each_binding(monkeypatch: pytest.MonkeyP
     """
     game = Game(flat(net), seed=1)
     found = len(game.enabled())
-    monkeypatch.delattr(Enabling, "take")
+    monkeypatch.delattr(Demands, "take")
     assert found == len(Game(flat(net), seed=1).enabled()) > 0

@@ -9,6 +9,8 @@ import pytest
 from helpers.thorough import amount
 from pn2code.timing.causes import Occurrence, Story
 from pn2code.timing.critical import Study, Wait
+from pn2code.timing.run_look import RunTimes, Side
+from pn2code.timing.run_report import text
 
 
 def story(rows: list[tuple[int, float, tuple[int, ...]]]) -> Story:
@@ -64,3 +66,13 @@ def test_only_the_supervisor_and_arms_end_a_run() -> None:
     study = Study(story(rows), {0, 1})
     assert study.seconds == 1.0 and study.path == (0,)
     assert study.gain({1}) == 0.0
+    # A run that is stopped later: without what the device does, which nobody waits for, it would be no longer.
+    assert study.busy(2) == 9.0 and study.needed(2) == 0.0 and study.last == 10.0
+
+
+def test_a_report_of_a_run_in_which_a_device_goes_on() -> None:
+    sides = (Side("arm", 1.0, 1.0, 0.1, ()), Side("oven", 9.0, 0.0, 0.9, ()))
+    lines = text(RunTimes("run", "stopped", 1.0, 12.0, (), (), sides), full=True).splitlines()
+    assert lines[0] == "run: 12.000 s, stopped"
+    assert lines[1].startswith("The supervisor and the arms have done their last transition at 1.0")
+    assert "No overlapping makes it shorter than 1.000 s: so long `arm` is at work." in lines

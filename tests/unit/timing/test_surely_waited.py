@@ -11,19 +11,15 @@ from pn2code.cell.partition import OwnerKind
 from pn2code.timing.answers import Cycle, Ending, between
 from pn2code.timing.doings import FOREVER, NS, Doing, Doings
 from pn2code.timing.longest import Arc
+from pn2code.timing.look import Measured
 from pn2code.timing.search import MOST, TIE, Search
-from pn2code.timing.verified import (
-    _Judge,
-    path_before,
-    seen_too_long,
-    surely_waited,
-    waited_too_long,
-)
+from pn2code.timing.too_long import seen_too_long, surely_waited, too_long
+from pn2code.timing.unstopped import Unstopped
 from pn2code.timing.waits import longest_wait
 
 MS = NS // 1000
 ASK, WORK, END = 0, 1, 2
-OVER, CALM, STOPPED = 8, 9, 10
+OVER, CALM, STOPPED, UNSURE = 8, 9, 10, 11
 
 
 def timed_cell(work_ns: int, most: int = MOST) -> Search:
@@ -35,8 +31,8 @@ def timed_cell(work_ns: int, most: int = MOST) -> Search:
     net = SimpleNamespace(timed=True, places=[])
     graph = SimpleNamespace(
         why="",
-        partition=SimpleNamespace(net=net, owners=owners, final_places=()),
-        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED),
+        partition=SimpleNamespace(net=net, owners=owners, final_places=(), channels=()),
+        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}, unsure=UNSURE),
         elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (0, 1, 0)],
         arcs=[[(ASK, 1)], [(WORK, 2)], [(END, 3)], []],
         marked=[{}, {}, {}, {OVER: 1}],
@@ -57,6 +53,11 @@ def timed_cell(work_ns: int, most: int = MOST) -> Search:
     return search
 
 
+def measured(search: Search, timeout: int = 120 * NS) -> Measured:
+    """With the runs that nothing stops."""
+    return Measured(search, cast(Any, None), Unstopped(search, timeout))
+
+
 def test_whole_seconds_in_which_nothing_ends_are_waited_for() -> None:
     """A command of 3.4 s was one of 2.4 s to 3.4 s, and one of 18.456 s could have been one of 9.2 s."""
     for ns in (3_400 * MS, 18_456 * MS, 3_000 * MS, 400 * MS):
@@ -74,12 +75,14 @@ def test_what_was_seen_before_a_limit_may_be_too_long() -> None:
     first, second = (lambda mark: mark == ASK), (lambda mark: mark == END)
     search = timed_cell(18_456 * MS, 4)
     assert search.why == "situations"
-    found = seen_too_long(search, first, second, 17 * NS)
-    assert found is not None and found.ns == 18 * NS, "then the work is not done yet"
-    assert seen_too_long(search, first, second, 18 * NS) is None
+    found = seen_too_long(measured(search), first, second, 17 * NS)
+    assert found is not None and found.wait.ns == 18 * NS and found.ns is None, (
+        "then the work is not done yet"
+    )
+    assert seen_too_long(measured(search), first, second, 18 * NS) is None
     search.why = "overtaken"
-    assert seen_too_long(search, first, second, 17 * NS) is None
-    assert seen_too_long(timed_cell(18_456 * MS), first, second, 17 * NS) is None
+    assert seen_too_long(measured(search), first, second, 17 * NS) is None
+    assert seen_too_long(measured(timed_cell(18_456 * MS)), first, second, 17 * NS) is None
 
 
 @dataclass
@@ -133,9 +136,12 @@ def stopping_cell(first_ns: int = FOREVER, *, halts: bool = False) -> Search:
     graph = SimpleNamespace(
         why="",
         partition=SimpleNamespace(
-            net=SimpleNamespace(timed=False, places=[]), owners=owners, final_places=()
+            net=SimpleNamespace(timed=False, places=[]),
+            owners=owners,
+            final_places=(),
+            channels=(),
         ),
-        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED),
+        running=SimpleNamespace(firing=CALM, ending=-1, stopped=STOPPED, owing={}, unsure=UNSURE),
         elements=[SimpleNamespace(is_step=False, owner=owner) for owner in (0, 1, 0, 2)],
         arcs=[
             [(ASK, 1)],
@@ -170,7 +176,6 @@ def stopping_cell(first_ns: int = FOREVER, *, halts: bool = False) -> Search:
 def test_what_others_do_after_a_fault_is_no_run() -> None:
     """It was shown as a run that waits for 3 s, though the cell stops as soon as it has asked."""
     events = (lambda mark: mark == ASK), (lambda mark: mark == END)
-    shown: Any = SimpleNamespace(_shown=lambda *_: "shown")
     for search, is_real in (
         (stopping_cell(), False),
         (stopping_cell(halts=True), False),
@@ -179,38 +184,8 @@ def test_what_others_do_after_a_fault_is_no_run() -> None:
         wait = longest_wait(search.successors, *events, ())
         assert wait.ns == 3 * NS
         assert bool(search.stopped()) == (not is_real)
-        assert (waited_too_long(search, *events, 2 * NS) is not None) == is_real
-        one: Any = SimpleNamespace(search=search)
-        told: Any = _Judge._too_long(shown, cast(Any, None), one, wait, events, 2 * NS)
-        assert (told == "shown") == is_real
+        one = measured(search)
+        assert one.runs.is_all == is_real
+        assert (too_long(one, wait, events, 2 * NS, ()) is not None) == is_real
         search.why = "situations"
-        assert (seen_too_long(search, *events, 2 * NS) is not None) == is_real
-
-
-def test_a_wait_that_begins_behind_a_fault_is_no_run() -> None:
-    """Nor is the way to it that which goes through the fault, where there is another one."""
-    events = (lambda mark: mark == ASK), (lambda mark: mark == END)
-    shown: Any = SimpleNamespace(_shown=lambda *_: "shown")
-    behind: list[list[Arc]] = [
-        [(1, 5, WORK)],
-        [(2, 0, WORK)],
-        [(3, 1, ASK)],
-        [(4, 9 * NS, END)],
-        [],
-    ]
-    beside = [[(1, 5, WORK), (5, 1, WORK)], *behind[1:], [(2, 7, WORK)]]
-    for graph, path in ((behind, None), (beside, [(5, WORK), (2, WORK)])):
-        search: Any = SimpleNamespace(
-            successors=graph,
-            surely=lambda graph=graph: graph,
-            situations=[(i,) for i in range(len(graph))],
-            graph=SimpleNamespace(over=set()),
-            ends=set(),
-            stopped=lambda: {1},
-        )
-        wait = longest_wait(graph, *events, ())
-        assert (wait.ns, wait.before) == (9 * NS, 2)
-        assert path_before(search, wait) == path
-        one: Any = SimpleNamespace(search=search)
-        told: Any = _Judge._too_long(shown, cast(Any, None), one, wait, events, 2 * NS)
-        assert told == (None if path is None else "shown")
+        assert (seen_too_long(one, *events, 2 * NS) is not None) == is_real

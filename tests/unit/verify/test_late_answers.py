@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from pn2code.verify.controller.control import _is_full, _late
+from pn2code.verify.controller.cut_answers import too_late
 from pn2code.verify.exploring.limits import Limits
 
 
@@ -17,7 +17,7 @@ def test_only_what_is_open_for_the_number_of_states_has_another_reason() -> None
         {"answer": "unknown", "why": "memory"},
         {"answer": "yes"},
     ]
-    assert _late(rows) == ({"answer": "unknown", "why": "seconds"}, *rows[1:])
+    assert too_late(rows) == ({"answer": "unknown", "why": "seconds"}, *rows[1:])
 
 
 @pytest.mark.parametrize(
@@ -25,4 +25,4 @@ def test_only_what_is_open_for_the_number_of_states_has_another_reason() -> None
 )
 def test_what_is_permitted_at_all_counts(nodes: int, most: int | None, is_full: bool) -> None:
     found = cast(Any, SimpleNamespace(nodes=nodes))
-    assert _is_full(found, Limits(max_states=most)) is is_full
+    assert is_full(found, Limits(max_states=most)) is is_full

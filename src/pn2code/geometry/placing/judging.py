@@ -5,7 +5,8 @@
     judge.walk(values[0], 0.0)             # Walked: a whole plan, from there
 
 `look` takes of each pose the branch that is best conditioned, so no way is better conditioned than it says.
-`walk` plans as runs do, with samples of the ways, one arm at a time with the others at HOME. It is a guide for the
+`walk` plans as runs do, with samples of the ways, one arm at a time with the others at HOME, with the parts in its tool
+and all that may stand somewhere meanwhile; which contacts are permitted is the same as in runs. It is a guide for the
 search: what is found is looked at as a whole afterwards (`proving`).
 """
 
@@ -19,10 +20,13 @@ from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.placing.free import Free, base_of, moved
-from pn2code.geometry.placing.plan import Plan, Walk
+from pn2code.geometry.placing.plan import Among, Plan, Walk
 from pn2code.geometry.reach_map import Judged, Task, judge
+from pn2code.geometry.shown import Shown
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import LedContacts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 
@@ -54,8 +58,8 @@ class Walked:
     Args:
         done: the part of the commands that could be planned, 0 to 1.
         condition: the worst condition number; limit: rad, the least margin of a limit; see `Walk.counts`.
-        clearance: m, the least distance from what stands and from arms at HOME, at most `FAR`; not above zero if an arm
-            touches itself. What may touch does not count, unless it is deeper than permitted.
+        clearance: m, the least distance from the scene and from arms at HOME, at most `FAR`; not above zero if an arm
+            touches itself, or a part that stands. What may touch does not count, unless it is deeper than permitted.
         seconds: how long all commands together take.
     """
 
@@ -85,6 +89,8 @@ class Judge:
         self.cell, self.tasks, self.plans, self.free = cell, dict(tasks), dict(plans), tuple(free)
         self._moved = frozenset(f.robot for f in self.free)
         self._backend = BulletBackend(cell, looks=False)
+        self._shown = Shown(self._backend)
+        self._led = LedContacts(cell)
         self.reached: dict[str, NDArray[np.bool_]] = {}
         """of each arm, what it has reached from any placing that was looked at"""
         self.forget()
@@ -145,46 +151,78 @@ class Judge:
             for robot in placed.robots:
                 self._backend.set_base(robot.name, robot.base)
                 self._backend.set_joints(robot.name, robot.home)
-            return self._least(self._backend, placed, walks, enough)
+            return self._least(self._shown, placed, walks, enough)
         # Seen from a base that is elsewhere its turntables are, too: the collision library has to build them anew.
         backend = BulletBackend(placed, looks=False)
         try:
-            return self._least(backend, placed, walks, enough)
+            return self._least(Shown(backend), placed, walks, enough)
         finally:
             backend.close()
 
     def _least(
-        self, backend: BulletBackend, placed: RobotCell, walks: Mapping[str, Walk], enough: float
+        self, shown: Shown, placed: RobotCell, walks: Mapping[str, Walk], enough: float
     ) -> float:
-        least = FAR
+        backend, least = shown.backend, FAR
         for name, walk in walks.items():
-            for row, is_loose in zip(walk.q, walk.loose, strict=True):
-                backend.set_joints(name, row)
-                least = min(least, self._standing(backend, name, least, is_loose=bool(is_loose)))
-                if least <= 0.0 or least < enough:
-                    return least
+            for way in walk.ways:
+                for among in way.among:
+                    shown.show(among.parts.values())
+                    seen = _Seen(placed, name, way.ends, among)
+                    for row in walk.q[way.rows]:
+                        backend.set_joints(name, row)
+                        least = min(least, self._standing(backend, seen, least))
+                        if least <= 0.0 or least < enough:
+                            return least
             backend.set_joints(name, placed.robot(name).home)
         return least
 
-    def _standing(
-        self, backend: BulletBackend, name: str, limit: float, *, is_loose: bool
-    ) -> float:
+    def _standing(self, backend: BulletBackend, seen: _Seen, limit: float) -> float:
         # What a moved arm stands on stays where the cell has it in the collision library.
         stays = self._moved if backend is self._backend else ()
         own = {f"{robot}_{what}" for robot in stays for what in ("pedestal", "rail")}
         things = {t for t in backend.things if t not in own}
-        if any(gap.distance <= 0.0 for gap in backend.distances.pairs("self", name, _TOUCHING)):
+        things |= seen.names
+        pairs, name = backend.distances.pairs, seen.robot
+        if any(self._counted(gap, seen) <= 0.0 for gap in pairs("self", name, _TOUCHING)):
             return 0.0
-        found = backend.distances.pairs("scene", name, limit, only=things)
+        found = pairs("scene", name, limit, only=things)
         for other in self.cell.robots:
             if other.name != name:
-                found += backend.distances.pairs("robots", name, limit, other.name)
-        return min((_counted(c, is_loose) for c in found), default=limit)
+                found += pairs("robots", name, limit, other.name)
+        return min((self._counted(gap, seen) for gap in found), default=limit)
+
+    def _counted(self, gap: Clearance, seen: _Seen) -> float:
+        """On a joint move nothing may touch; else what may touch does not count.
+
+        How far parts that stand are from what is carried past them the net says, not where the arm stands.
+        """
+        allowed = gap.permitted(is_free=seen.ends is None or not seen.ends.is_path)
+        if allowed is None or self._led.is_by_the_way(
+            gap.a, gap.b, seen.ends_of, seen.among.parts, seen.stands
+        ):
+            is_part = gap.b in seen.names
+            return FAR if is_part and gap.distance > 0.0 else gap.distance
+        return FAR if gap.distance + allowed >= 0.0 else gap.distance
 
 
-def _counted(gap: Clearance, is_loose: bool) -> float:
-    """On a joint move nothing may touch; else what may touch does not count."""
-    allowed = gap.permitted(is_free=is_loose)
-    if allowed is None:
-        return gap.distance
-    return FAR if gap.distance + allowed >= 0.0 else gap.distance
+@frozen(eq=False)
+class _Seen:
+    """A robot on its way, and the parts around it."""
+
+    cell: RobotCell
+    robot: str
+    ends: MoveEnds | None
+    among: Among
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Of the parts that stand."""
+        return frozenset(p.name for p in self.among.standing)
+
+    def ends_of(self, robot: str) -> MoveEnds | None:
+        """All others stand."""
+        return self.ends if robot == self.robot else None
+
+    def stands(self, robot: str) -> Array:
+        """Where another one stands."""
+        return np.array(self.cell.robot(robot).home)

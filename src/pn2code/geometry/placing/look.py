@@ -23,7 +23,7 @@ from pn2code.geometry.legs import Planner
 from pn2code.geometry.look import Options
 from pn2code.geometry.placing.free import Free, moved, parse
 from pn2code.geometry.placing.judging import Judge
-from pn2code.geometry.placing.plan import Plan
+from pn2code.geometry.placing.plan import Plan, parts_of
 from pn2code.geometry.placing.proving import Proof, prove
 from pn2code.geometry.placing.search import Candidate, Found, Search, Wish, unlike
 from pn2code.geometry.reach_look import told
@@ -222,7 +222,7 @@ class _Placing:
         if not self.regardless:
             self.regardless = self._regardless(situations)
         tasks = {r: Task.of(situations, cell.robot(r)) for r in self.robots}
-        plans = {r: Plan.of(legs, r) for r in self.robots}
+        plans = {r: Plan.of(legs, r, parts_of(situations, r)) for r in self.robots}
         return tasks, plans, all(leg.fault is None for leg in legs)
 
     def _regardless(self, found: Situations) -> str:

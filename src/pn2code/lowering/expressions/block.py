@@ -16,7 +16,7 @@ from pn2code.lowering.expressions.effects import (
 )
 from pn2code.lowering.expressions.functions import Program
 from pn2code.lowering.expressions.matching import TypeSource
-from pn2code.lowering.expressions.types import substitute
+from pn2code.lowering.expressions.type_terms import substitute
 from pn2code.lowering.expressions.values import (
     BuiltinFunction,
     Closure,

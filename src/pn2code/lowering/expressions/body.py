@@ -17,8 +17,8 @@ from pn2code.lowering.expressions.branching import Branching
 from pn2code.lowering.expressions.matching import is_irrefutable
 from pn2code.lowering.expressions.parameters import split_parameters
 from pn2code.lowering.expressions.shapes import escapes, is_recursive_group
-from pn2code.lowering.expressions.types import has_function as type_has_function
-from pn2code.lowering.expressions.types import substitute
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import substitute
 from pn2code.lowering.expressions.values import (
     Binding,
     BuiltinFunction,

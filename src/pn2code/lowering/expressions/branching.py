@@ -21,7 +21,7 @@ from pn2code.lowering.expressions.matching import (
 )
 from pn2code.lowering.expressions.parameters import split_parameters
 from pn2code.lowering.expressions.shapes import covers, handled_name, is_simple, nodes, size
-from pn2code.lowering.expressions.types import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
 from pn2code.lowering.expressions.values import Binding, Env, NamedFunction, Partial, Val, is_atomic
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import Type

@@ -99,6 +99,7 @@ class FunctionValues:
             is_function = isinstance(
                 part, Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial
             )
+            # Only a function that captures something has code.
             return body.code(part, at) if is_function and capture(part).code else part  # type: ignore[arg-type]
 
         match value:
@@ -113,7 +114,7 @@ class FunctionValues:
                 return NamedFunction(symbol, group, kept, types)
             case Partial(function=applied, arguments=arguments):
                 made = tuple(inner(a) for a in arguments)
-                return Partial(applied, made)  # type: ignore[arg-type]
+                return Partial(applied, made)  # type: ignore[arg-type]  # inner functions stay functions
         return value
 
     def _enter(
@@ -295,4 +296,4 @@ def argument_type(program: Program, value: Val) -> Type:
         return function_type(value).argument
     code = value
     assert not is_static(code)
-    return program.types.functions[code.type.name].argument  # type: ignore[union-attr]
+    return program.types.functions[code.type.name].argument  # type: ignore[union-attr]  # only function values are here

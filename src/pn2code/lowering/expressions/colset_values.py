@@ -133,6 +133,7 @@ def _constructors(body: Body, c: Colset, t: ir.IrType, at: Span) -> Ir:
                 higher_order.for_each(
                     body,
                     all_values(body, part, at),
+                    # The default keeps the tag of this round.
                     lambda x, tag=tag: keep(ir.MakeUnion(tag, x, element)),  # type: ignore[misc]
                 )
 

@@ -49,7 +49,7 @@ def may_raise(value: Val) -> bool:
         return any(map(may_raise, value.fields.values()))
     if isinstance(value, Partial):
         return any(map(may_raise, value.arguments))
-    return not is_static(value) and code_may_raise(value)  # type: ignore[arg-type]
+    return not is_static(value) and code_may_raise(value)  # type: ignore[arg-type]  # what is not static is code
 
 
 def raises_only_overflow(value: Val | tuple[Stmt, ...]) -> bool:

@@ -9,21 +9,16 @@ gives `twice/1 (cx, k, x)`: what the passed function captures (`k`) is a paramet
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import order_functions
 from pn2code.ir.nodes import Ir, Local, Rep
-from pn2code.lowering import prelude
-from pn2code.lowering.codes import (
-    UNSUPPORTED_EXPRESSION,
-    UnsupportedError,
-)
+from pn2code.lowering.codes import UNSUPPORTED_EXPRESSION, UnsupportedError
 from pn2code.lowering.expressions.closures import FunctionValues, is_intricate
 from pn2code.lowering.expressions.exceptions import Exceptions
-from pn2code.lowering.expressions.matching import is_irrefutable
 from pn2code.lowering.expressions.parameters import (
     hint_of,
     is_split,
@@ -31,9 +26,10 @@ from pn2code.lowering.expressions.parameters import (
     parameters_of,
     split_parameters,
 )
-from pn2code.lowering.expressions.purity import is_impure_builtin
-from pn2code.lowering.expressions.types import Types, substitute
-from pn2code.lowering.expressions.types import has_function as type_has_function
+from pn2code.lowering.expressions.reaching import Reaching, nodes
+from pn2code.lowering.expressions.type_terms import has_function as type_has_function
+from pn2code.lowering.expressions.type_terms import substitute
+from pn2code.lowering.expressions.types import Types
 from pn2code.lowering.expressions.values import (
     Binding,
     BuiltinFunction,
@@ -45,15 +41,15 @@ from pn2code.lowering.expressions.values import (
     TypeEnv,
     Val,
     capture,
-    children,
     declared,
+    has_function,
     is_static,
     pattern_symbols,
     type_key,
 )
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
-from pn2code.ml.core.types import BOOL, TCon, TRecord, Type
+from pn2code.ml.core.types import TCon, TRecord, Type
 
 if TYPE_CHECKING:
     from pn2code.lowering.expressions.block import Block
@@ -64,7 +60,7 @@ _MAX_COPIES = 60
 """Of a function for different functions that are passed to it; from then on they are passed as values."""
 
 
-class Program:
+class Program(Reaching):
     """All that is asked for of the declarations. One per net.
 
     Args:
@@ -79,10 +75,8 @@ class Program:
         real_time: bool,
         new_body: Callable[[Program, TypeEnv, str], Body],
     ) -> None:
-        self.core = program
+        super().__init__(program, builtins, real_time)
         self.types = types
-        self.builtins = builtins
-        self.real_time = real_time
         self._new_body = new_body
         self.position = Origin("")
         self.lists_are_functions = False
@@ -90,42 +84,19 @@ class Program:
         self._made: dict[str, ir.Function] = {}
         self._pending: list[tuple[str, NamedFunction, tuple[Binding, ...], list[Local]]] = []
         self._counters: dict[str, int] = {}
-        self._groups: dict[int, core.RecBind] = {}
-        self._primitives: dict[int, core.Builtin] = {}
-        self._values: dict[int, tuple[int, core.ValBind]] = {}
         self._globals: dict[Hashable, Reference | ir.GlobalUse] = {}
         self._setups: dict[tuple[int, Hashable], tuple[ir.Global, ...]] = {}
         self._global_names: set[str] = set()
-        self._impure: dict[int, bool] = {}
-        self._binding: dict[int, bool] = {}
         self.handles = any(
             isinstance(node, core.Handle)
             for dec in program.declarations
             for e in declared(dec)
-            for node in _nodes(e)
+            for node in nodes(e)
         )
         self.function_values = FunctionValues(self)
         self.exceptions = Exceptions(self)
-        for position, dec in enumerate(program.declarations):
-            if isinstance(dec, core.RecBind):
-                for symbol, _ in dec.bindings:
-                    self._groups[symbol.uid] = dec
-            elif isinstance(dec, core.ValBind):
-                for symbol in pattern_symbols(dec.pattern):
-                    self._values[symbol.uid] = (position, dec)
 
     # --- top-level names -----------------------------------------------------------------------
-
-    def adopt(self, file: prelude.File) -> None:
-        """Makes the functions of a file of the prelude known."""
-        self._primitives.update(file.primitives)
-        for dec in file.declarations:
-            if isinstance(dec, core.RecBind):
-                for symbol, _ in dec.bindings:
-                    self._groups[symbol.uid] = dec
-            elif isinstance(dec, core.ValBind):
-                for symbol in pattern_symbols(dec.pattern):
-                    self._values[symbol.uid] = (symbol.uid - prelude.LAST_UID, dec)
 
     def global_value(
         self, body: Body, symbol: Symbol, inst: Mapping[int, Type], at: Span
@@ -162,72 +133,6 @@ class Program:
             return body.bind_pattern(dec.pattern, value)[symbol.uid]
         finally:
             body.types = outer
-
-    def _is_static(self, e: core.Exp) -> bool:
-        """Whether a function, or a record with functions, is the same and costs nothing each time it is looked at."""
-        match e:
-            case core.Lambda() | core.Builtin() | core.Con() | core.Lit():
-                return True
-            case core.Var(symbol=symbol):
-                if symbol.uid in self._values and type_has_function(symbol.type):
-                    return self._is_static(self._values[symbol.uid][1].value)
-                return True
-            case core.RecordExp(fields=fields):
-                return all(self._is_static(f) for _, f in fields)
-            case core.Apply(function=core.Builtin(name="General.o"), argument=argument):
-                return self._is_static(argument)
-            case core.Apply():
-                # A curried function that waits for more.
-                head: core.Exp = e
-                arguments = 0
-                while isinstance(head, core.Apply):
-                    if not self._is_static(head.argument):
-                        return False
-                    head, arguments = head.function, arguments + 1
-                return arguments < self._curried(head)
-        return False
-
-    def _curried(self, e: core.Exp) -> int:
-        """The number of arguments a function takes before it does anything."""
-        match e:
-            case core.Var(symbol=symbol) if symbol.uid in self._groups:
-                group = self._groups[symbol.uid]
-                function = next(f for s, f in group.bindings if s == symbol)
-                return len(split_parameters(function)[0])
-            case core.Builtin():
-                return self.builtins.arity(BuiltinFunction(e, e.type))
-        return 0
-
-    def constant(self, e: core.Exp) -> int | float | None:
-        """The number that an expression is: a literal, its negation, a value declared as one."""
-        match e:
-            case core.Lit(value=int() | float() as value):
-                return value
-            case core.Apply(function=core.Builtin(name=name), argument=argument) if name.endswith(
-                ".~"
-            ):
-                inner = self.constant(argument)
-                return None if inner is None else -inner
-            case core.Var(symbol=symbol) if symbol.uid in self._values:
-                dec = self._values[symbol.uid][1]
-                return self.constant(dec.value) if isinstance(dec.pattern, core.PVar) else None
-        return None
-
-    def truth(self, e: core.Exp) -> bool | None:
-        """What a condition always is: `true`, `false`, a value declared as one of them, `not` of such.
-
-        The way that is never taken is not generated: in C it would be dead code.
-        """
-        match e:
-            case core.Con(constructor=constructor) if e.type == BOOL:
-                return constructor.tag == 1
-            case core.Apply(function=core.Builtin(name="Bool.not"), argument=argument):
-                inner = self.truth(argument)
-                return None if inner is None else not inner
-            case core.Var(symbol=symbol) if symbol.uid in self._values:
-                dec = self._values[symbol.uid][1]
-                return self.truth(dec.value) if isinstance(dec.pattern, core.PVar) else None
-        return None
 
     def body(self) -> Body:
         """A body of a function that no ML function is."""
@@ -375,8 +280,6 @@ class Program:
 
     @staticmethod
     def _slot(body: Block, value: Val) -> Val:
-        from pn2code.lowering.expressions.values import has_function
-
         return (
             body.code(value) if isinstance(value, RecordVal) and not has_function(value) else value
         )
@@ -460,10 +363,11 @@ class Program:
                 fields = dict(
                     zip((label for label, _ in t.fields), slots[at : at + n], strict=True)
                 )
+                # The slots of parameters are values, not declared functions of many types.
                 argument: Val = RecordVal(fields, substitute(t, head.types))  # type: ignore[arg-type]
                 at += n
             else:
-                argument = slots[at]  # type: ignore[assignment]
+                argument = slots[at]  # type: ignore[assignment]  # likewise
                 at += 1
             assert isinstance(remaining, core.Lambda)
             if len(remaining.rules) > 1:
@@ -481,111 +385,6 @@ class Program:
             body.has_self_call, False, span.text, span.origin,
         )  # fmt: skip
 
-    def may_raise_bind(self, e: core.Exp) -> bool:
-        """Whether a `val` pattern that may not fit is evaluated in an expression, directly or in a function."""
-        return self._reaches(e, has_refutable_binding, self._binding)
-
-    # --- purity --------------------------------------------------------------------------------
-
-    def is_impure(self, e: core.Exp) -> bool:
-        """Whether the order of evaluation matters for it."""
-        return self._reaches(e, _is_impure_node, self._impure)
-
-    def reaches(self, e: core.Exp, has: Callable[[core.Exp], bool]) -> bool:
-        """Whether something holds for a part of an expression, or of what it uses of the declarations."""
-        return self._reaches(e, has, {})
-
-    def _reaches(
-        self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
-    ) -> bool:
-        """Whether a property holds for a part of an expression, or of a top-level function that it uses.
-
-        Functions may call each other: nothing is noted of one before all that it uses has been looked at.
-        """
-        if id(e) in known:
-            return known[id(e)]
-        seen, todo = {id(e)}, [e]
-        while todo:
-            for node in _nodes(todo.pop()):
-                used = self._used(node)
-                if has(node) or any(known.get(id(f), False) for f in used):
-                    known[id(e)] = True
-                    return True
-                todo += [f for f in used if id(f) not in known and id(f) not in seen]
-                seen.update(map(id, used))
-        known.update(dict.fromkeys(seen, False))
-        return False
-
-    def prelude_function(self, builtin: str) -> tuple[prelude.File, Symbol] | None:
-        """The function of the prelude that a built-in function is; its file is adopted."""
-        if self.builtins.is_primitive(builtin):
-            return None
-        found = prelude.find(builtin, self.real_time)
-        if found is not None and found[1].uid not in self._groups:
-            self.adopt(found[0])
-        return found
-
-    def _used(self, e: core.Exp) -> tuple[core.Exp, ...]:
-        """What is computed where a node names something of the declarations or of the prelude."""
-        if isinstance(e, core.Builtin):
-            found = self.prelude_function(e.name)
-            group = self._groups.get(found[1].uid) if found is not None else None
-        elif isinstance(e, core.Var):
-            primitive = self._primitives.get(e.symbol.uid)
-            if primitive is not None:
-                return (primitive,)
-            group = self._groups.get(e.symbol.uid)
-        else:
-            group = None
-        return () if group is None else tuple(f for _, f in group.bindings)
-
-    def _is_impure_value(self, value: Binding) -> bool:
-        from pn2code.lowering.expressions.values import BuiltinFunction, Closure, Partial
-
-        match value:
-            case Closure(function=f):
-                return self.is_impure(f)
-            case NamedFunction():
-                return self.is_impure(value.function)
-            case BuiltinFunction(node=node):
-                return is_impure_builtin(node.name)
-            case Partial(function=f, arguments=arguments):
-                return self._is_impure_value(f) or any(map(self._is_impure_value, arguments))
-            case RecordVal(fields=fields):
-                return any(map(self._is_impure_value, fields.values()))
-        return False
-
-
-def _is_impure_node(e: core.Exp) -> bool:
-    match e:
-        case core.Builtin(name=name):
-            return is_impure_builtin(name)
-        case core.Var(symbol=symbol):
-            # A function that is a value may do anything.
-            return (
-                symbol.is_global
-                and isinstance(symbol.type, TCon | TRecord)
-                and (type_has_function(symbol.type))
-            )
-    return False
-
-
-def has_refutable_binding(e: core.Exp) -> bool:
-    """Whether it is a `let` with a pattern that may not fit, or the exception `Bind` itself."""
-    if isinstance(e, core.Con):
-        return e.constructor.data_type == "exn" and e.constructor.name == "Bind"
-    return isinstance(e, core.Let) and any(
-        isinstance(d, core.ValBind) and not is_irrefutable(d.pattern) for d in e.declarations
-    )
-
 
 def _is_builtin(e: core.Exp, name: str) -> bool:
     return isinstance(e, core.Builtin) and e.name == name
-
-
-def _nodes(e: core.Exp) -> Iterator[core.Exp]:
-    todo = [e]
-    while todo:
-        node = todo.pop()
-        yield node
-        todo += children(node)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Mapping
 from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir
-from pn2code.lowering.expressions.types import substitute
+from pn2code.lowering.expressions.type_terms import substitute
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import TFun, Type

@@ -203,6 +203,7 @@ class Enumeration:
         for symbol, part in match.bindings:
             code = self._body.code(part)
             if symbol.uid in self._bound:
+                # What is bound by a net variable is code.
                 conditions.append(same(self._body, code, self._env[symbol.uid]))  # type: ignore[arg-type]
             elif symbol.uid in first:
                 conditions.append(same(self._body, code, first[symbol.uid]))

@@ -70,8 +70,9 @@ def _counted(node: T, lists: dict[int, ir.PlaceTokens]) -> T:
         case ir.Op(name=name, arguments=(ir.Use(local=local),)) if (
             name in _COUNTS and local.uid in lists
         ):
-            return ir.PlaceTotal(lists[local.uid].place)  # type: ignore[return-value]
+            return ir.PlaceTotal(lists[local.uid].place)  # type: ignore[return-value]  # a node in the place of a node
         case tuple():
+            # A tuple takes the place of a tuple.
             return tuple(_counted(part, lists) for part in node)  # type: ignore[return-value]
     fields = getattr(node, "__dataclass_fields__", None)
     if not fields:

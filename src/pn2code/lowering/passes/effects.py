@@ -100,4 +100,5 @@ def _roots(net: ir.NetIR, reach: Reach) -> tuple[str, ...]:
 
 
 def _places(nodes: Iterable[object], kinds: tuple[type, ...]) -> frozenset[int]:
+    # The nodes of all `kinds` have a place.
     return frozenset(n.place for n in nodes if isinstance(n, kinds))  # type: ignore[attr-defined]

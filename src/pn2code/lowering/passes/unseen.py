@@ -111,7 +111,7 @@ def _within(s: Any, read: frozenset[int]) -> Stmt:
         before = getattr(s, name)
         if (left := _without(before, read)) is not before:
             changed[name] = left
-    return replace(s, **changed) if changed else s  # type: ignore[no-any-return]
+    return replace(s, **changed) if changed else s  # type: ignore[no-any-return]  # a statement like `s`
 
 
 def _done(value: Ir) -> Iterator[Stmt]:

@@ -170,7 +170,8 @@ def _more() -> dict[str, re.Pattern[str]]:
         text = path.read_text(encoding="ascii")
         own = re.findall(r"^    (?:fun|structure|val) (\w+)", text, re.MULTILINE)
         members = "|".join(sorted(set(own), key=len, reverse=True))
-        found[path.stem] = re.compile(rf"\b{path.stem}\s*\.\s*(?:{members})\b(?!')")
+        named = "|".join(re.findall(r"^structure ([\w']+)", text, re.MULTILINE))
+        found[path.stem] = re.compile(rf"\b(?:{named})\s*\.\s*(?:{members})\b(?!')")
     return found
 
 
@@ -200,6 +201,8 @@ def declaration(name: str) -> str:
 def declared(name: str) -> tuple[str, ...]:
     """What its declaration declares: itself, and what stands beside it."""
     found = re.findall(
-        r"^(?:fun|val|exception|structure|functor|signature) (\w+)", declaration(name), re.MULTILINE
+        r"^(?:fun|val|exception|structure|functor|signature) ([\w']+)",
+        declaration(name),
+        re.MULTILINE,
     )
     return tuple(dict.fromkeys(found))

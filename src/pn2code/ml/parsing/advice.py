@@ -131,7 +131,7 @@ def unsupported(name: str) -> str:
     if name == "inst":
         return (
             "it is the number of the page instance, which arcs, guards, delays, code segments and initial markings "
-            "know, and the functions that they call: let one of them call it"
+            "know, and the functions declared with `fun` or `fn` that they call: let one of them call it"
         )
     if name.startswith("IOUtil."):
         return "it lets a function read from or write to a file in place of the standard streams: use `TextIO.openIn`"

@@ -16,7 +16,7 @@ from pn2code.ml import codes
 from pn2code.ml.parsing import advice
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.flat_sequence import FlatSequence
-from pn2code.ml.parsing.tree import is_long
+from pn2code.ml.parsing.tree_parts import is_long
 
 MAX_DEPTH = 200
 """Nesting of expressions and patterns that is followed; the later stages recurse over the same trees."""

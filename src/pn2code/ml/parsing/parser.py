@@ -19,7 +19,8 @@ from pn2code.ml.parsing.lalr import Loop, SyntaxProblem
 from pn2code.ml.parsing.lexer import Lexeme, insert_delay_parentheses, tokenize
 from pn2code.ml.parsing.plain_text import guessed_names, old_declaration
 from pn2code.ml.parsing.tables import tables
-from pn2code.ml.parsing.tree import Group, NotANameError, TreeBuilder
+from pn2code.ml.parsing.tree import TreeBuilder
+from pn2code.ml.parsing.tree_parts import Group, NotANameError
 
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
 
@@ -87,10 +88,20 @@ def is_layered(source: SourceText) -> bool:
 
 def odd_declaration(source: SourceText) -> str:
     """The word of the first declaration in an expression that is not `val`; "" if there is none."""
+    return _first(source, _DECLARING)
+
+
+def opens(source: SourceText) -> bool:
+    """Whether an expression opens a structure, however deep inside."""
+    return "open" in source.text and bool(_first(source, frozenset({"OPEN"})))
+
+
+def _first(source: SourceText, kinds: frozenset[str]) -> str:
+    """The first word of these kinds that stands behind a `let`; "" if there is none."""
     if "let" not in source.text:
         return ""
     tokens = tokenize(source, Diagnostics()) or []
-    return next((t.text for t in tokens if t.kind in _DECLARING), "")
+    return next((t.text for t in tokens if t.kind in kinds), "")
 
 
 _DECLARING = frozenset(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.library.builtins import STRUCTURES
 from pn2code.ml.parsing import syntax as s
@@ -29,7 +30,7 @@ class Annotations:
         """The type; the error type when something was reported."""
         match t:
             case s.VarTy():
-                return self._variable(t.name)
+                return self._variable(t.name, t.span)
             case s.FunTy():
                 return IFun(self.type(t.argument), self.type(t.result))
             case s.RecordTy():
@@ -44,13 +45,14 @@ class Annotations:
             case s.NameTy():
                 return self._name(t)
 
-    def _variable(self, name: str) -> Ty:
+    def _variable(self, name: str, span: Span) -> Ty:
         for scope in reversed(self._ctx.tyvars):
             if name in scope:
                 return scope[name]
         meta = self._ctx.unifier.fresh(equality=name.startswith("''"))
         if self._ctx.tyvars:
             self._ctx.tyvars[-1][name] = meta
+        self._ctx.written_tyvars.append((name, meta, span))
         return meta
 
     def _name(self, t: s.NameTy) -> Ty:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
 
-from pn2code.base.frozen import frozen
-from pn2code.diagnostics import NOWHERE, Origin, SourceText
+from pn2code.diagnostics import SourceText
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
@@ -42,37 +40,10 @@ from pn2code.ml.typing.environment import (
 )
 from pn2code.ml.typing.inference import from_type
 from pn2code.ml.typing.unifier import MAX_TYPE_NODES
+from pn2code.ml.typing.written_colset import ColsetSpec
 
 _BRACKETS = re.compile(r"\s*\[.*\]\s*", re.DOTALL)
 _BARE_FN = re.compile(r"\s*fn\b")
-
-
-@frozen
-class ColsetSpec:
-    """A colour set as written, names not yet resolved.
-
-    Args:
-        name: declared name.
-        kind: the XML tag: "unit", "bool", "int", "intinf", "time", "real", "string", "enum", "index", "product",
-            "record", "list", "union", "subset", "alias".
-        ids: enum values, product components, list base, alias base, subset base, unit/bool names, index stem.
-        fields: record fields and union constructors as (label, type or "").
-        texts: the texts in order: ranges, subset predicate or list.
-        timed: whether tokens carry time stamps.
-        by_predicate: SUBSET: the text is a predicate (`by`), not a list (`with`).
-        declare: extra functions asked for; all are always there, so this is accepted and not needed.
-        origin: declaration.
-    """
-
-    name: str
-    kind: str
-    ids: tuple[str, ...] = ()
-    fields: tuple[tuple[str, str], ...] = ()
-    texts: tuple[SourceText, ...] = ()
-    timed: bool = False
-    by_predicate: bool = False
-    declare: tuple[str, ...] = ()
-    origin: Origin = field(default=NOWHERE)
 
 
 TypedExpression = Callable[[SourceText, Sequence[Type], str], "tuple[int, core.Exp] | None"]
@@ -227,7 +198,7 @@ class Colsets:
         high = self._constant(texts[1], types, "upper bound")
         if low is None or high is None:
             return None
-        if low > high:  # type: ignore[operator]
+        if low > high:  # type: ignore[operator]  # both are of one of the types
             self._ctx.error(
                 codes.COLSET_RANGE,
                 f"lower bound {_shown(low)} of colour set `{spec.name}` is above the upper bound {_shown(high)}",

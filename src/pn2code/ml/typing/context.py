@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Span
@@ -73,13 +72,15 @@ def no_expression() -> core.Exp:
 BROKEN = Draft(ERROR, no_expression)
 
 
-@dataclass(slots=True)
 class Context:
     """State of the elaboration of one net.
 
     Args:
         d: where errors go.
         real_time: whether the clock is real.
+        int_bits: width of `int`.
+
+    Attributes:
         unifier: types in the making.
         scope: present scope.
         top: scope of the top-level declarations.
@@ -93,11 +94,11 @@ class Context:
         weak: types of values that are not generalised; what is unknown in them at the end of the declaration stays so.
         open_records: selectors and open patterns whose record type must be known in the end.
         tyvars: explicit type variables in force, innermost last.
+        written_tyvars: those that no declaration around them binds, and where they are written.
         generic_base: number of type variables quantified around the declaration being translated.
         datatypes: all datatypes by name.
         colsets: by name; None for those with errors.
         equality: whether a datatype (of equality arguments) has equality.
-        int_bits: width of `int`.
         unread_files: files of declarations that are not there or could not be read.
         announced: gives all names that the net declares anywhere.
         mentions_instances: whether an inscription uses `inst`.
@@ -106,42 +107,37 @@ class Context:
         division: the innermost `/` whose operands are being looked at.
     """
 
-    d: Diagnostics
-    real_time: bool
-    unifier: Unifier = field(init=False)
-    scope: Scope = field(init=False)
-    top: Scope = field(init=False)
-    tainted: bool = False
-    errors: int = 0
-    depth: int = 0
-    unknown: set[str] = field(default_factory=set)
-    expected: Ty | None = None
-    token: tuple[s.Exp, Type] | None = None
-    net_variables: set[str] = field(default_factory=set)
-    open_records: list[tuple[Meta, Span]] = field(default_factory=list)
-    weak: list[Ty] = field(default_factory=list)
-    tyvars: list[dict[str, Meta]] = field(default_factory=list)
-    generic_base: int = 0
-    datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)
-    colsets: dict[str, Colset | None] = field(default_factory=dict)
-    equality: dict[str, bool] = field(default_factory=dict)
-    int_bits: int = 31
-    unread_files: list[str] = field(default_factory=list)
-    announced: Callable[[], frozenset[str]] = frozenset
-    mentions_instances: bool = False
-    on_page: bool = False
-    warned: set[tuple[str, str, str]] = field(default_factory=set)
-    division: s.InfixExp | None = None
-    next_uid: int = 0
-    next_exception: int = FIRST_EXCEPTION_TAG
-    _names: dict[Type, str | None] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Starts with the library."""
+    def __init__(self, d: Diagnostics, real_time: bool, *, int_bits: int = 31) -> None:
+        self.d = d
+        self.real_time = real_time
+        self.int_bits = int_bits
+        self.equality: dict[str, bool] = {}
         self.unifier = Unifier(self.equality)
         self.top = Scope(library_scope())
         self.scope = self.top
-        self.datatypes = dict(DATATYPES)
+        self.tainted = False
+        self.errors = 0
+        self.depth = 0
+        self.unknown: set[str] = set()
+        self.expected: Ty | None = None
+        self.token: tuple[s.Exp, Type] | None = None
+        self.net_variables: set[str] = set()
+        self.open_records: list[tuple[Meta, Span]] = []
+        self.weak: list[Ty] = []
+        self.tyvars: list[dict[str, Meta]] = []
+        self.written_tyvars: list[tuple[str, Meta, Span]] = []
+        self.generic_base = 0
+        self.datatypes: dict[str, core.DatatypeDec] = dict(DATATYPES)
+        self.colsets: dict[str, Colset | None] = {}
+        self.unread_files: list[str] = []
+        self.announced: Callable[[], frozenset[str]] = frozenset
+        self.mentions_instances = False
+        self.on_page = False
+        self.warned: set[tuple[str, str, str]] = set()
+        self.division: s.InfixExp | None = None
+        self.next_uid = 0
+        self.next_exception = FIRST_EXCEPTION_TAG
+        self._names: dict[Type, str | None] = {}
 
     def enter(self, span: Span) -> None:
         """One level deeper; `depth` goes back by the caller.

@@ -13,7 +13,7 @@ CPN'CodeGen CPN'ColorSets CPN'ConfidenceInterval CPN'CreateMonitor CPN'Decl CPN'
 CPN'HashCommon CPN'IMSTable CPN'IO CPN'ITSV CPN'IUSV CPN'Id CPN'IdTable CPN'InstTable CPN'Int CPN'IntKey
 CPN'IntListKey CPN'IntListTable CPN'IntTable CPN'List CPN'MS CPN'Misc CPN'MonitorAux CPN'MonitorTable
 CPN'MonitorTemplate CPN'Options CPN'OrderCommon CPN'PTnet CPN'PageTable CPN'PerfOptions CPN'Place CPN'PlaceSim
-CPN'PlaceTable CPN'Places CPN'Profile CPN'RS CPN'RTSV CPN'RUSV CPN'Random CPN'Real CPN'RefTable CPN'Reference
+CPN'PlaceTable CPN'Places CPN'Profile CPN'RS CPN'RTSV CPN'RUSV CPN'Real CPN'RefTable CPN'Reference
 CPN'ReferenceSim CPN'References CPN'RepTable CPN'Response CPN'SerializerCommon CPN'SimGlue
 CPN'StandardMonitors CPN'String CPN'StringTable CPN'SymTable CPN'SyntaxCheck CPN'SyntaxDatatypes
 CPN'SyntaxErrors CPN'SyntaxTables CPN'TMS CPN'Transition CPN'TransitionTable CPN'Tree CPN'UnitTime
@@ -49,6 +49,7 @@ _MEMBERS = """
 BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flushOut getBufferMode getPosOut
 BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
 BinIO.StreamIO : setBufferMode setPosOut
+CPN'Random : init
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
 LibBase : banner failure version

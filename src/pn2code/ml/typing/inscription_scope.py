@@ -15,6 +15,7 @@ from pn2code.ml.typing.environment import (
     UnsupportedEntry,
 )
 from pn2code.ml.typing.expressions import Expressions
+from pn2code.ml.typing.inference import IError, Meta, prune
 
 T = TypeVar("T")
 
@@ -49,6 +50,7 @@ class InscriptionScope:
         self._ctx.tainted = False
         self._ctx.unifier.level = 1
         self._ctx.tyvars.append({})
+        self._ctx.written_tyvars.clear()
         try:
             yield
         finally:
@@ -61,10 +63,32 @@ class InscriptionScope:
         """What `build` gives, unless something was reported since `before` or uses something broken."""
         if self._ctx.errors == before:
             self._ctx.resolve_pending()
+            self._rigid()
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:
             return None
         return build()
+
+    def _rigid(self) -> None:
+        """Report type variables that would have to be one certain type: `n : 'a`."""
+        for name, meta, span in self._ctx.written_tyvars:
+            found = prune(meta)
+            if isinstance(found, Meta) and found.equality and not name.startswith("''"):
+                self._ctx.error(
+                    codes.NOT_EQUALITY,
+                    f"values of the type variable `{name}` are compared with `=`",
+                    span,
+                    hint=f"write `'{name}`, which stands for types with equality",
+                )
+                return
+            if not isinstance(found, Meta | IError):
+                self._ctx.error(
+                    codes.TYPE_VARIABLE,
+                    f"the type variable `{name}` would have to be `{self._ctx.show(found)}`",
+                    span,
+                    hint=f"`{name}` stands for any type; leave it out, or write the type that is meant",
+                )
+                return
 
     @contextmanager
     def _one_mistake(self) -> Iterator[None]:

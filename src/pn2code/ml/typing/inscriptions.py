@@ -153,9 +153,11 @@ class Inscriptions(InscriptionScope):
 
             return self._finish(before, build)
 
-    def plain(self, exp: s.Exp, types: Sequence[Type], what: str) -> tuple[int, core.Exp] | None:
+    def plain(
+        self, exp: s.Exp, types: Sequence[Type], what: str, *, on_page: bool = False
+    ) -> tuple[int, core.Exp] | None:
         """An expression without net variables."""
-        with self._scope(self._ctx.top):
+        with self._scope(self._ctx.top, on_page=on_page):
             before = self._ctx.errors
             if len(types) == 1:
                 draft = self._expressions.check(exp, from_type(types[0], []), what)

@@ -15,13 +15,19 @@ from __future__ import annotations
 import errno
 import os
 import select
-import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from pn2code.base.frozen import frozen
+from pn2code.base.late import Late
 from pn2code.semantics.values.data import MlUnavailable
+
+if TYPE_CHECKING:
+    import socket
+else:
+    socket = Late("socket")
 
 SEGMENT = 127
 """Bytes of data in a segment."""
@@ -34,7 +40,7 @@ _SLICE = 0.1
 
 
 @frozen
-class ConnectionProblem(Exception):  # noqa: N818
+class ConnectionProblem(Exception):  # noqa: N818 - a word for what has happened
     """What CPN Tools raises as an exception.
 
     Args:

@@ -173,7 +173,7 @@ def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
     """What gives the parts of a term in which others are; None for what has none, or has effects itself."""
     if kind.__module__ != core.__name__ or kind in (core.Builtin, core.Symbol):
         return None
-    slots: Iterable[str] = kind.__slots__  # type: ignore[attr-defined]
+    slots: Iterable[str] = kind.__slots__  # type: ignore[attr-defined]  # terms have slots
     names = tuple(name for name in slots if name not in _LEAVES)
     match names:
         case ():

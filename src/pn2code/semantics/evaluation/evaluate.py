@@ -27,6 +27,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import TRecord
 from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.evaluation.matching import match
 from pn2code.semantics.evaluation.random import RandomStream
 from pn2code.semantics.evaluation.tasks import Step, Tail, Task
 from pn2code.semantics.library.builtins import builtin, colset_builtin
@@ -142,6 +143,7 @@ class Evaluator:
 
     def value(self, exp: core.Exp, binding: Mapping[Symbol, Value] | None = None) -> Value:
         """The value of an expression over net variables."""
+        # A task that ends gives a value.
         return self.evaluate(exp, {symbol.uid: value for symbol, value in (binding or {}).items()})  # type: ignore[no-any-return]
 
     def evaluate(self, exp: core.Exp, environment: Environment) -> Any:
@@ -164,7 +166,7 @@ class Evaluator:
 
     def apply(self, function: Value, argument: Value) -> Value:
         """The value of a function at an argument."""
-        return self.run(self.call(function, argument))  # type: ignore[no-any-return]
+        return self.run(self.call(function, argument))  # type: ignore[no-any-return]  # tasks give values
 
     def run(self, step: Step) -> Any:
         """Runs a step to its end.
@@ -438,7 +440,7 @@ _STEPS: dict[type, Callable[[Evaluator, Any, Environment], Step]] = {
 def _in_order(exp: core.RecordExp, values: list[Value]) -> Value:
     """A record from the values of its fields as written."""
     written = exp.fields
-    fields = exp.type.fields  # type: ignore[union-attr]
+    fields = exp.type.fields  # type: ignore[union-attr]  # a record has the type of one
     for i in range(len(written)):
         if written[i][0] != fields[i][0]:
             break
@@ -451,7 +453,7 @@ def _in_order(exp: core.RecordExp, values: list[Value]) -> Value:
 def _field(exp: core.Select, record: Any) -> Value:
     assert isinstance(exp.record.type, TRecord)
     labels = [label for label, _ in exp.record.type.fields]
-    return record[labels.index(exp.label)]  # type: ignore[no-any-return]
+    return record[labels.index(exp.label)]  # type: ignore[no-any-return]  # a record holds values
 
 
 def _construct(constructor: core.Constructor) -> Value:
@@ -468,77 +470,3 @@ def _construct(constructor: core.Constructor) -> Value:
             if not constructor.has_argument:
                 return Data(name, tag)
             return Native(name, 1, lambda evaluator, argument: Data(name, tag, argument))
-
-
-def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
-    """Matches a value, adding to `bound` what the variables stand for.
-
-    A variable that is in `bound` already must have an equal value: net variables may occur again. So have declared
-    values that a pattern names: `bound` begins with those of `Enabling.constants`.
-    What was added before a mismatch stays, so a caller who goes on copies `bound` first.
-    """
-    return _MATCHES[type(pattern)](pattern, value, bound)
-
-
-def _match_record(pattern: core.PRecord, value: Any, bound: dict[int, Value]) -> bool:
-    for (_, field), item in zip(pattern.fields, value, strict=True):
-        if not _MATCHES[type(field)](field, item, bound):
-            return False
-    return True
-
-
-def _match_constructor(pattern: core.PCon, value: Any, bound: dict[int, Value]) -> bool:
-    constructor, argument = pattern.constructor, pattern.argument
-    match constructor.data_type, constructor.name:
-        case "bool", name:
-            return bool(value == (name == "true"))
-        case "list", "nil":
-            return len(value) == 0
-        case "list", _:
-            assert argument is not None
-            return len(value) > 0 and match(argument, (value[0], value[1:]), bound)
-        case "timed", _:
-            assert argument is not None
-            return match(argument, (value.value, value.stamp), bound)
-        case _:
-            same = bool(value.tag == constructor.tag)
-            return same and (argument is None or match(argument, value.argument, bound))
-
-
-def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
-    if symbol.uid in bound:
-        return v.same(bound[symbol.uid], value)
-    bound[symbol.uid] = value
-    return True
-
-
-_MATCHES: dict[type, Callable[[Any, Any, dict[int, Value]], bool]] = {
-    core.PVar: lambda pattern, value, bound: _bind(pattern.symbol, value, bound),
-    core.PWild: lambda pattern, value, bound: True,
-    core.PEqual: lambda pattern, value, bound: v.same(bound[pattern.value.symbol.uid], value),
-    core.PRecord: _match_record,
-    core.PLit: lambda pattern, value, bound: bool(value == pattern.value),
-    core.PAs: lambda pattern, value, bound: (
-        _bind(pattern.symbol, value, bound) and match(pattern.pattern, value, bound)
-    ),
-    core.PCon: _match_constructor,
-}
-"""How to match each kind of pattern."""
-
-
-def variables(node: core.Exp | core.Pat | core.Dec | core.Rule) -> frozenset[Symbol]:
-    """Every symbol used or bound anywhere in a piece of the core language."""
-    found: set[Symbol] = set()
-    todo: list[Any] = [node]
-    while todo:
-        item = todo.pop()
-        if isinstance(item, Symbol):
-            found.add(item)
-        elif isinstance(item, tuple):
-            todo.extend(item)
-        elif type(item).__module__ == core.__name__:
-            todo.extend(getattr(item, name) for name in item.__slots__ if name not in _LEAVES)
-    return frozenset(found)
-
-
-_LEAVES = frozenset({"type", "span", "inst", "colset", "constructor"})

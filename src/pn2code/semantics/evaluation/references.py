@@ -68,7 +68,7 @@ class Held:
                     return "builtin", name, plain(arguments)
                 case float() if is_negative_zero(value):
                     return "zero", "~"
-            return value  # type: ignore[no-any-return]
+            return value  # type: ignore[no-any-return]  # whatever else there is
 
         found = []
         for cell in waiting:  # grows on the way

@@ -17,9 +17,11 @@ from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Exp, Lit, Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindTerm, FlatTransition, Term
 from pn2code.net.terms import binary
-from pn2code.semantics.evaluation.evaluate import match, variables
+from pn2code.semantics.evaluation.matching import match
 from pn2code.semantics.evaluation.random import bindings_of
-from pn2code.semantics.game.enabling import Demand, Enabling, Found
+from pn2code.semantics.evaluation.used_symbols import variables
+from pn2code.semantics.game.demands import Demand, Found
+from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.semantics.values.multiset import MultiSet

@@ -16,7 +16,8 @@ from pn2code.base.readable import readable
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import FlatArc, Form
-from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.game.demands import Demand
+from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.marking import Marking, PlaceMarking
 from pn2code.semantics.values.colours import Colours
 from pn2code.semantics.values.data import Timed, Value

@@ -19,7 +19,7 @@ from pn2code.net.flat import (
 )
 from pn2code.net.total import is_total
 from pn2code.semantics.evaluation.effects import Effects
-from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.evaluation.used_symbols import variables
 
 
 @frozen

@@ -29,7 +29,8 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.random import occurrence_of
 from pn2code.semantics.evaluation.references import NOTHING, Held, tracked
 from pn2code.semantics.game.constant import constant_transitions
-from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.game.demands import Demand
+from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.enabling_cache import EnablingCache
 from pn2code.semantics.game.errors import GameError, running
 from pn2code.semantics.game.marking import (
@@ -51,7 +52,7 @@ AT_START = Limits(steps=10_000_000)
 """Of a declaration or an initial marking, which are computed once: a thousand sorted tokens take a million."""
 
 
-class NotEnabled(ValueError):  # noqa: N818
+class NotEnabled(ValueError):  # noqa: N818 - a word for what has happened
     """A binding element was to occur that is not enabled; the message says why."""
 
 

@@ -103,6 +103,7 @@ def integers(
 
     def scan(e: Evaluator, radix: Data, reader: Value, stream: Value) -> Task:
         base = BASES[radix.name]
+        # What a scanner gives is a task.
         return scanner(lambda e, text: read(e, text, base), _plausible_in_number)(e, reader, stream)  # type: ignore[no-any-return]
 
     operations: dict[str, Function] = {
@@ -182,6 +183,7 @@ def words(structure: str, bits: int) -> dict[str, tuple[int, Function]]:
 
     def scan(e: Evaluator, radix: Data, reader: Value, stream: Value) -> Task:
         base = BASES[radix.name]
+        # What a scanner gives is a task.
         return scanner(lambda e, text: read(e, text, base), _plausible_in_word)(e, reader, stream)  # type: ignore[no-any-return]
 
     operations: dict[str, Function] = {

@@ -33,7 +33,7 @@ def _contained(part: Items, whole: Items) -> bool:
 def _random(e: Evaluator, items: Items) -> Value:
     if not items:
         raise MlException(exception("Empty"))
-    return items[e.random.below(len(items))]  # type: ignore[no-any-return]
+    return items[e.random.below(len(items))]  # type: ignore[no-any-return]  # items are values
 
 
 def _all_legal(e: Evaluator, legal: Value, items: Items) -> Task:
@@ -79,7 +79,7 @@ def _times(n: int, items: Items) -> Items:
 def _only(e: Evaluator, items: Items) -> Value:
     if len(items) != 1:
         raise MlException(exception("no_singleton"))
-    return items[0]  # type: ignore[no-any-return]
+    return items[0]  # type: ignore[no-any-return]  # items are values
 
 
 FUNCTIONS: dict[str, tuple[int, Function]] = {

@@ -67,7 +67,7 @@ def from_json(c: Colset, data: Json) -> Value:
         case Kind.INDEX if _is_int(data):
             return Data(c.names[0], 0, int(data))
         case Kind.TIME if _is_int(data) or isinstance(data, float):
-            return data  # type: ignore[no-any-return]
+            return data  # type: ignore[no-any-return]  # looked at just before
         case Kind.REAL if _is_int(data) or isinstance(data, float):
             return float(data)
         case Kind.REAL | Kind.TIME if isinstance(data, str) and data in _NOT_FINITE:

@@ -13,21 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.semantics.values import colour_messages
-from pn2code.semantics.values.data import (
-    UNIT,
-    Data,
-    MlException,
-    Timed,
-    Value,
-    equal,
-    exception,
-    float32,
-    int_text,
-    real_text,
-)
-
-if TYPE_CHECKING:
-    from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.values.colour_bounds import (
     has_bounds,
     is_numbered,
@@ -40,10 +25,25 @@ from pn2code.semantics.values.colour_bounds import (
     refuse_too_many,
 )
 from pn2code.semantics.values.colour_components import assemble, component, parts_of
+from pn2code.semantics.values.data import (
+    UNIT,
+    Data,
+    MlException,
+    Timed,
+    Value,
+    equal,
+    exception,
+    float32,
+    int_text,
+    real_text,
+)
 from pn2code.semantics.values.no_numbers import LEAST
 
+if TYPE_CHECKING:
+    from pn2code.semantics.evaluation.evaluate import Evaluator
 
-class NotFinite(ValueError):  # noqa: N818
+
+class NotFinite(ValueError):  # noqa: N818 - a word for what has happened
     """A real that has to be finite is not."""
 
 
@@ -456,11 +456,11 @@ class Colours:
             NotFinite: a rounded real is infinite or not a number.
         """
         if not float32_names:
-            return value  # type: ignore[no-any-return]
+            return value  # type: ignore[no-any-return]  # a value as it was
         match c.kind:
             case Kind.REAL:
                 if c.name not in float32_names:
-                    return value  # type: ignore[no-any-return]
+                    return value  # type: ignore[no-any-return]  # a value as it was
                 rounded = float32(value)
                 if not math.isfinite(rounded):
                     raise NotFinite(f"{real_text(value)} is not finite as a float32")
@@ -478,11 +478,11 @@ class Colours:
             case Kind.UNION:
                 part = c.components[value.tag]
                 if part is None:
-                    return value  # type: ignore[no-any-return]
+                    return value  # type: ignore[no-any-return]  # a value as it was
                 inner = self.stored(part, value.argument, float32_names)
                 return Data(value.name, value.tag, inner)
             case _:
-                return value  # type: ignore[no-any-return]
+                return value  # type: ignore[no-any-return]  # a value as it was
 
 
 _NO_EVALUATOR: Any = None

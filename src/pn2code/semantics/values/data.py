@@ -185,11 +185,11 @@ class MlException(Exception):  # noqa: N818 - the field's word; it is not an err
         return self.name
 
 
-class MlUnavailable(Exception):  # noqa: N818
+class MlUnavailable(Exception):  # noqa: N818 - a word for what has happened
     """A function was applied that exists in CPN Tools but cannot run here; CPN ML cannot handle it."""
 
 
-class MlLimit(Exception):  # noqa: N818
+class MlLimit(Exception):  # noqa: N818 - a word for what has happened
     """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
 
 

@@ -30,7 +30,7 @@ class _Alike:
     def __gt__(self, other: object) -> bool:
         return False
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None  # type: ignore[assignment]  # as lists have it
 
 
 LEAST, ALIKE = _Least(), _Alike()

@@ -120,7 +120,7 @@ class Conditions:
             case "enabled":
                 return Fireable((transition_name(f.number),))
             case "initial":
-                return _joined(
+                return joined(
                     "and", [self._same(i, n) for i, n in enumerate(self.unfolding.initial)]
                 )
             case "pred":
@@ -162,7 +162,7 @@ class Conditions:
 
     def _equal(self, a: Sum, b: Sum) -> Formula:
         d = _added(a, b, -1)
-        return _joined("and", [self.at_most(d, 0), self.at_most(_added(Sum({}), d, -1), 0)])
+        return joined("and", [self.at_most(d, 0), self.at_most(_added(Sum({}), d, -1), 0)])
 
     # --- CPN ML ------------------------------------------------------------------------------------
 
@@ -184,7 +184,7 @@ class _Reader:
             case core.If(condition, then, otherwise):
                 c = self.truth(condition)
                 yes, no = self.truth(then), self.truth(otherwise)
-                return _joined("or", [_joined("and", [c, yes]), _joined("and", [_negated(c), no])])
+                return joined("or", [joined("and", [c, yes]), joined("and", [_negated(c), no])])
             case _ if not self._looks(e):
                 return Truth(self._value(e) is True)
             case core.Apply(core.Builtin("Bool.not"), of):
@@ -217,13 +217,13 @@ class _Reader:
                 return self.to._equal(self._number(a), self._number(b))
             case "=" if _is_bool(a):
                 x, y = self.truth(a), self.truth(b)
-                both = _joined("and", [x, y])
-                return _joined("or", [both, _joined("and", [_negated(x), _negated(y)])])
+                both = joined("and", [x, y])
+                return joined("or", [both, joined("and", [_negated(x), _negated(y)])])
             case "=" if _is_empty(a) or _is_empty(b):
                 held = self._tokens(b if _is_empty(a) else a)
                 return self.to.at_most(self._counted(held), 0)
             case "Ms.==":
-                return _joined("and", [self._within(a, b), self._within(b, a)])
+                return joined("and", [self._within(a, b), self._within(b, a)])
             case "Ms.<<=":
                 return self._within(a, b)
             case "Ms.>>=":
@@ -238,7 +238,7 @@ class _Reader:
         for colour in dict.fromkeys((*left, *right)):
             difference = _added(left.get(colour, zero), right.get(colour, zero), -1)
             parts.append(self.to.at_most(difference, 0))
-        return _joined("and", parts)
+        return joined("and", parts)
 
     # --- numbers
 
@@ -355,7 +355,7 @@ def _negated(f: Formula) -> Formula:
     return f.parts[0] if isinstance(f, Op) and f.operator == "not" else Op("not", (f,))
 
 
-def _joined(operator: str, parts: Sequence[Formula]) -> Formula:
+def joined(operator: str, parts: Sequence[Formula]) -> Formula:
     """`and` or `or` of formulas; what decides by itself stays alone."""
     deciding = Truth(operator == "or")
     left = [p for p in parts if p != Truth(operator != "or")]

@@ -1,9 +1,9 @@
-"""A run to a marking of which it is known that it is reachable: by random walks of the engine, written as a trace.
+"""A run to a marking of which it is known that it is reachable: by walks and searches of the engine, as a trace.
 
     found = hunt(program, questions.tables, {"p": "reach not sum 1 3 1 2"}, seconds=5.0)
     found["p"]                        # indices of unfolded transitions, loops left out
 
-A walk that finds nothing says nothing.
+What is not found says nothing.
 """
 
 from __future__ import annotations
@@ -37,11 +37,13 @@ def hunt(
     """
     names = list(wanted)
     text = tables.text([f"{i} {wanted[n]}" for i, n in enumerate(names)])
-    task = Task("run", text, seconds, _MEBIBYTES)
+    tasks = [Task(method, text, seconds, _MEBIBYTES) for method in ("run", "way")]
     found: dict[str, tuple[int, ...]] = {}
-    for said in ask(program, [task]) if names and seconds > 0 else ():
+    for said in ask(program, tasks) if names and seconds > 0 else ():
         if isinstance(said, Run):
             found[names[said.number]] = _without_loops(tables, said.steps)
+            if len(found) == len(names):
+                break
     return found
 
 

@@ -1,6 +1,6 @@
 """What the unfolded net tells where a limit has ended the exploration of all markings, or instead of it.
 
-    found = look(opened, asked, found, limits, options, d)
+    found = look(opened, asked, found, limits, options)
     found.unfolded.whole, found.unfolded.told["a property"]
 
 The net is unfolded, and asked by methods that need not visit one marking after the other: decision diagrams with
@@ -9,22 +9,23 @@ First the sizes of its state space, then whether a marking is dead and the prope
 tokens places hold. What the exploration has seen must agree with it.
 
 It is asked only where its answers are about the same state space: nothing is timed or drawn at random, nobody writes
-references or files, no inscription raises an exception whatever is asked first, there are no priorities, inhibitor and
-reset arcs, and no code segments.
+references or files (code segments neither), no inscription raises an exception whatever is asked first, and there are
+no priorities, inhibitor and reset arcs.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import record
 from pn2code.contest.building import wait_until_built
-from pn2code.contest.diagrams import METHOD
 from pn2code.contest.engine import engine
 from pn2code.contest.examinations import Asked as Question
 from pn2code.contest.lines import Result
@@ -50,16 +51,23 @@ from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.unfolded import Told, Unfolded, Whole
 
+ALONE = 1
+"""Most states of an exploration instead of which the unfolded net is asked: no more than the initial marking."""
 EXPLORING = 2 / 3
 """Of a limit of time, what the exploration of single markings may take where the unfolded net can be asked, too."""
 _LEAST_S, _MOST_S = 10.0, 300.0
 """Where time is not limited: half of what the exploration took, within these bounds."""
+_UNFOLDING = 0.35
+"""Of the time, for unfolding: where colours do not end it would go on for ever."""
+_ASKING = 0.9
+"""Of what is left then, for all questions; the rest is for telling what is known."""
 _SIZES = 0.4
 _PROPERTIES = 0.7
 _RUNS = 0.3
 """Of the time that is left, in this order: for sizes, for properties, for runs; the rest is for the bounds."""
 _LEAST_MIB = 256
-_RUN_S = 20.0
+_LOOK_S = 0.1
+_RUN_S = 10.0
 _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
 
@@ -71,7 +79,7 @@ def why_not(net: FlatNet) -> str:
     if len({t.priority for t in net.transitions}) > 1:
         return "its transitions have priorities"
     d = Diagnostics()
-    check(net, d)
+    check(net, d, with_code=True)
     if d.errors:
         return d.errors[0].message
     if nondeterminism.draws(net):
@@ -89,7 +97,6 @@ def look(
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
-    d: Diagnostics,
 ) -> Exploration:
     """The exploration, with what the unfolded net tells besides.
 
@@ -98,7 +105,6 @@ def look(
         asked: what is asked of it.
         found: what was explored, up to a limit.
         limits, options: of the exploration; runs go where they say.
-        d: gets the errors.
 
     Raises:
         RuntimeError: the methods contradict each other, or the exploration.
@@ -107,41 +113,73 @@ def look(
         return found
     began = time.monotonic()
     deadline = limits.deadline
-    if deadline.left is None:
-        deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     if deadline.is_over():
         return found
-    options.stage("asking the unfolded net ...")
+    options.stage("unfolding the net ...")
+    sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
+    try:
+        with deadline.enforced():
+            wait_until_built()
+    except TimeIsOverError:
+        return _with(found, Unfolded(why="there was no time to compile what asks it"), limits)
+    if deadline.left is None:
+        deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
         with deadline.enforced():
             why = why_not(opened.flat)
             if why:
-                return replace(found, unfolded=Unfolded(why=why))
-            unfolding = _unfolded(opened.flat)
+                return _with(found, Unfolded(why=why), limits)
+            with deadline.share(_UNFOLDING).enforced():
+                unfolding = _unfolded(opened.flat)
             if isinstance(unfolding, str):
-                return replace(found, unfolded=Unfolded(why=unfolding))
+                return _with(found, Unfolded(why=unfolding), limits)
             game = Game(opened.flat, opened.storage, files=Files(None))
             questions = Questions.of(game, unfolding, asked.plain)
     except TimeIsOverError:
-        return replace(found, unfolded=Unfolded(why="it took too long to unfold it"))
+        return _with(found, Unfolded(why="it took too long to unfold it"), limits)
     except GameError as problem:
-        return replace(found, unfolded=Unfolded(why=problem.message))
-    wait_until_built()
-    with engine(d) as program:
-        if program is None:
-            return found
-        asker = _Asker(program, unfolding, questions, deadline, limits, options)
-        asker.ask_all()
-        asker.find_runs(opened)
+        return _with(found, Unfolded(why=problem.message), limits)
+    built = Diagnostics()
+    with engine(built) as program:
+        if program is None:  # the explorer may have been kept from before
+            return _with(found, Unfolded(why=built.errors[0].message), limits)
+        occurred = frozenset(i for i, count in enumerate(found.fired) if count)
+        made = Unfolded(
+            places=len(unfolding.places),
+            transitions=len(unfolding.transitions),
+            bounds={},
+            told={},
+            refused=questions.refused,
+        )
+        ends = deadline.share(_ASKING)
+        asker = _Asker(program, unfolding, questions, ends, limits, options, occurred, made)
+        with suppress(TimeIsOverError), _until(options.interrupted).enforced():
+            asker.ask_all()
+            asker.find_runs(opened)
     made = replace(asker.made, seconds=time.monotonic() - began)
-    _check(opened.flat, found, made)
-    return replace(found, unfolded=made)
+    if wrong := contradiction(found, made):
+        raise RuntimeError(f"the unfolded net is another one: {wrong}")
+    return _with(found, made, limits)
+
+
+def _with(found: Exploration, made: Unfolded, limits: Limits) -> Exploration:
+    is_alone = limits.max_states == ALONE
+    made = replace(made, is_alone=is_alone)
+    if not is_alone or not made.is_asked:
+        return replace(found, unfolded=made)
+    # Nothing is to be said of the initial marking as if it were a state space.
+    return replace(found, why="unfolded", told=False, bounds=None, fired=(), unfolded=made)
+
+
+def _until(interrupted: Callable[[], bool]) -> Deadline:
+    """A deadline that comes when somebody interrupts: it is looked at ten times a second."""
+    return Deadline(_LOOK_S, _LOOK_S, lambda: 2 * _LOOK_S if interrupted() else 0.0)
 
 
 def _unfolded(net: FlatNet) -> Unfolding | str:
     """The net unfolded, or why it cannot be asked."""
     d = Diagnostics()
-    unfolding = unfold(net, d)
+    unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
         return d.errors[0].message
     if unfolding.faults:
@@ -151,7 +189,10 @@ def _unfolded(net: FlatNet) -> Unfolding | str:
 
 @record
 class _Asker:
-    """Asks one thing after the other, as far as the time allows."""
+    """Asks one thing after the other, as far as the time allows.
+
+    `occurred`: transitions that were seen to occur.
+    """
 
     program: Path
     unfolding: Unfolding
@@ -159,7 +200,8 @@ class _Asker:
     deadline: Deadline
     limits: Limits
     options: ExploreOptions
-    made: Unfolded = field(default_factory=Unfolded)
+    occurred: frozenset[int]
+    made: Unfolded
 
     @property
     def mebibytes(self) -> int:
@@ -171,17 +213,16 @@ class _Asker:
 
     def ask_all(self) -> None:
         """Sizes, properties, and what a report says of places and transitions."""
-        q, u = self.questions, self.unfolding
-        self.made = replace(
-            self.made, places=len(u.places), transitions=len(u.transitions), told={}, bounds={}
-        )
+        q = self.questions
         if not q.tables.fits():
             self.made = replace(self.made, why="its numbers of tokens are too large")
             return
+        self.options.stage("counting the markings of the unfolded net ...")
         sizes = space(self.program, q.tables, seconds=self._left(_SIZES), mebibytes=self.mebibytes)
         if sizes is not None:
             methods = tuple(sizes.method.split())
             self.made = replace(self.made, whole=Whole(sizes.states, sizes.arcs, methods))
+        self.options.stage("asking the unfolded net for dead markings and properties ...")
         told: dict[str, Told] = {}
         for result in self._answers([q.dead(), *q.properties], self._left(_PROPERTIES)):
             methods = tuple(result.techniques.split())
@@ -200,27 +241,16 @@ class _Asker:
         )
 
     def _ask_rest(self) -> None:
-        """What occurs, and how many tokens places hold at most."""
+        """What occurs, as far as it was not seen to, and how many tokens places hold at most."""
         q, net = self.questions, self.unfolding.net
         which = range(len(net.transitions))
-        without = [i for i in which if not q.tables.transitions[transition_name(i)]]
-        known: dict[str, bool | int] = {}
-        rest = [*q.transitions(which), *q.bounds(range(len(net.places)))]
-        seconds = self._left(1.0 - _RUNS)
-        only = METHOD if self.made.is_whole else ""
-        if rest and seconds > 0.0:
-            for result in answers(
-                self.program,
-                q.tables,
-                rest,
-                seconds=seconds,
-                mebibytes=self.mebibytes,
-                only=only,
-            ):
-                known[result.name] = result.value
-        occurs = {i: known.get(transition_name(i)) for i in which}
-        never = sorted([*without, *(i for i, o in occurs.items() if o is False)])
-        open_ = [i for i, o in occurs.items() if o is None and i not in without]
+        without = {i for i in which if not q.tables.transitions[transition_name(i)]}
+        unseen = [i for i in which if i not in without and i not in self.occurred]
+        self.options.stage("asking the unfolded net what occurs, and for bounds ...")
+        rest = [*q.transitions(unseen), *q.bounds(range(len(net.places)))]
+        known = {r.name: r.value for r in self._answers(rest, self._left(1.0 - _RUNS))}
+        never = sorted([*without, *(i for i in unseen if known.get(transition_name(i)) is False)])
+        open_ = [i for i in unseen if transition_name(i) not in known]
         bounds = {i: int(known[f"p{i}"]) for i in range(len(net.places)) if f"p{i}" in known}
         bounds |= {i: 0 for i, own in enumerate(self.unfolding.of_place) if not own}
         self.made = replace(self.made, never=tuple(never), open_=tuple(open_), bounds=bounds)
@@ -235,6 +265,7 @@ class _Asker:
                 wanted[name] = text
         if self.made.has_dead and self.options.traces is not None:
             wanted[_DEAD_RUN] = "reach dead"
+        self.options.stage("looking for runs in the unfolded net ...")
         seconds = min(self._left(), _RUN_S)
         found = hunt(self.program, self.questions.tables, wanted, seconds=seconds)
         for number, (name, steps) in enumerate(sorted(found.items())):
@@ -258,24 +289,15 @@ class _Asker:
         return o.evidence / f".pn2code-{os.getpid()}-u{number}.trace.jsonl"
 
 
-def _check(net: FlatNet, found: Exploration, made: Unfolded) -> None:
-    """What was seen of the state space must be in what is said of all of it.
-
-    Raises:
-        RuntimeError: it is not.
-    """
-    wrong: str = ""
+def contradiction(found: Exploration, made: Unfolded) -> str:
+    """What was seen of the state space and is not in what is said of all of it; "": nothing."""
     if made.whole is not None and not found.is_reduced and made.whole.states < found.nodes:
-        wrong = f"{made.whole.states} markings, but {found.nodes} were seen"
-    elif found.dead_count and made.has_dead is False:
-        wrong = "no dead marking, but one was seen"
-    fired = {i for i, count in enumerate(found.fired) if count}
-    for i in made.never:
-        if i in fired:
-            wrong = f"`{net.transitions[i].name}` never occurs, but it was seen to"
+        return f"there are {made.whole.states} markings, but {found.nodes} were seen"
+    if found.dead_count and made.has_dead is False:
+        return "there is no dead marking, but one was seen"
+    if any(i < len(found.fired) and found.fired[i] for i in made.never):
+        return "a transition never occurs that was seen to"
     bounds: Mapping[int, int] = made.bounds or {}
-    for i, most in bounds.items():
-        if found.bounds is not None and found.bounds[i].upper > most:
-            wrong = f"`{net.places[i].name}` holds {most} tokens at most, but more were seen"
-    if wrong:
-        raise RuntimeError(f"the unfolded net says: {wrong}")
+    if any(found.bounds is not None and found.bounds[i].upper > n for i, n in bounds.items()):
+        return "places hold fewer tokens at most than were seen in them"
+    return ""

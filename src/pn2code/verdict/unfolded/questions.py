@@ -19,6 +19,7 @@ from pn2code.unfold.net import Unfolding
 from pn2code.verdict.unfolded.conditions import (
     Conditions,
     NotTranslatedError,
+    joined,
     name,
     transition_name,
 )
@@ -127,7 +128,7 @@ def _translated(conditions: Conditions, asked: m.Asked) -> tuple[str, Formula]:
                 wrong.append(Op("not", (conditions.at_most(held, high),)))
             if low:
                 wrong.append(conditions.at_most(held, low - 1))
-            return "reach", wrong[0] if len(wrong) == 1 else Op("or", tuple(wrong))
+            return "reach", joined("or", wrong)
         case m.Branching(formula):
             return "ctl", conditions.branching(formula)
         case m.Linear(formula, ()):

@@ -79,10 +79,12 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
     if found.known is not None:
         return _counted(found, found.known)
     rest = basis.partial(found)
-    if found.unfolded is not None and not found.unfolded.why:
+    if found.unfolded is not None and found.unfolded.is_asked:
+        if found.unfolded.is_alone:
+            return "" if found.knows_whole else f"{_why(found, counts)}."
         rest = (
-            "What is said of single markings is about those that were seen; what the unfolded net tells is about all "
-            "reachable ones."
+            "Nodes, and tables of bounds, dead markings and transitions, are those of the part that was seen; what the "
+            "unfolded net tells is about all reachable markings."
         )
     return f"{_why(found, counts)}. {endless(net, found)}{rest}"
 

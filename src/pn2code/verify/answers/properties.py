@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -170,14 +171,23 @@ def _answer(p: m.Property, said: Mapping[str, Any], *, is_part: bool) -> Answer:
 
 def from_unfolded(answer: Answer, found: Exploration) -> Answer:
     """With what the unfolded net tells, where exploring has not decided."""
-    told = (found.unfolded and found.unfolded.told) or {}
-    if answer.answer != "inconclusive" or answer.about.name not in told:
+    u = found.unfolded
+    if answer.answer != "inconclusive" or u is None or not u.is_asked:
         return answer
-    one = told[answer.about.name]
+    one = (u.told or {}).get(answer.about.name)
+    if one is None:
+        why = clause(found.why)
+        refused = (u.refused or {}).get(answer.about.name)
+        if refused:
+            more = "" if u.is_alone else f"{why}, and "
+            why = f"{more}the unfolded net cannot be asked: {refused}"
+        return replace(answer, why=why)
     evidence = None if one.run is None else Evidence(*one.run, None)
     is_shown = isinstance(answer.about.asked, m.Invariant | m.Bound)
     looked = (
-        "random walks have found none" if is_shown else "none is looked for in the unfolded net"
+        "walks and searches have found none in time"
+        if is_shown
+        else "none is looked for in the unfolded net"
     )
     has_run = not one.holds and evidence is None
     return Answer(

@@ -15,6 +15,7 @@ _CLAUSES = {
     "error": "an inscription raised an exception",
     "exception": "an inscription raised an exception",
     "decided": "all properties were decided before the end",
+    "unfolded": "the unfolded net was asked alone, and has not told it in time",
     "counted": "not all markings of the closed net were counted",
     "truncated": "not all markings were seen",
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",

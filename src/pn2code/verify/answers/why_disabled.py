@@ -27,8 +27,9 @@ from itertools import islice
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatTransition
-from pn2code.semantics.evaluation.evaluate import variables
-from pn2code.semantics.game.enabling import Demand, Enabling
+from pn2code.semantics.evaluation.used_symbols import variables
+from pn2code.semantics.game.demands import Demand
+from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.errors import NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking, place_text, variable_text
 from pn2code.semantics.game.token_game import Game, GameError

@@ -71,7 +71,7 @@ class Seen:
 
     Args:
         looked: the net and its states.
-        said: what follows of the questions about the cell, in the order of `control.of_cell`.
+        said: what follows of the questions about the cell, in the order of `control_questions.of_cell`.
         asked: the same of those about its orders.
         answers: what is said of properties, in their order.
         others: the numbers of properties that are about the closed net alone.
@@ -403,7 +403,7 @@ def _said(
     rows: Sequence[Mapping[str, Any]],
     longest: Sequence[int],
 ) -> tuple[Mapping[str, Any], ...]:
-    """The answers as `control.of_cell` asks for them."""
+    """The answers as `control_questions.of_cell` asks for them."""
     _, stops, *others = rows[len(rows) - _asked(made, plan) :]
     silences, channels = len(made.running.silences), len(partition.channels)
     left = iter(others[silences + channels :])

@@ -39,7 +39,8 @@ from pn2code.cell.partition import SUPERVISOR, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.verify.controller.control_types import Plan
-from pn2code.verify.controller.running import Running, Silence
+from pn2code.verify.controller.running import Running
+from pn2code.verify.controller.silence import Silence
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits

@@ -28,7 +28,8 @@ from pn2code.verify.controller.control_types import (
     Plan,
 )
 from pn2code.verify.controller.premises import COUNTED, IN_TURNS
-from pn2code.verify.controller.running import OWING, Running
+from pn2code.verify.controller.running import Running
+from pn2code.verify.controller.running_steps import OWING
 from pn2code.verify.exploring.result import Exploration
 
 ORDERS = 4

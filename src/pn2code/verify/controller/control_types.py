@@ -66,6 +66,8 @@ KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH, 
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
 STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH)
 """Checks where a "no" means that the supervisor stops, or the script of a robot and the cell with it."""
+OVERFLOWING = (CAPACITY, MESSAGES, MEMORY)
+"""Those of them where it stops at a token or message."""
 MOST_WRITTEN = 300_000
 """States of a cell whose graph is written for those who go through it."""
 MAX_FIRINGS = 100_000
@@ -288,6 +290,12 @@ class Control:
     def is_counted(self) -> bool:
         """Whether tokens are counted up to a limit only (`by_counts`)."""
         return self.found is not None and self.found.is_counted
+
+    @property
+    def overflow(self) -> str:
+        """Why the supervisor may stop at a token or message that it cannot keep or write; "": that is not known."""
+        found = (c for c in self.checks if c.name in OVERFLOWING and c.answer == "no")
+        return next((f"{_who(c)} stops (`{c.name}`: {c.says})" for c in found), "")
 
     @property
     def stops(self) -> str:

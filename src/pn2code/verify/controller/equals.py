@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from itertools import count
 
 from pn2code.diagnostics import Span
-from pn2code.lowering.expressions.types import substitute
+from pn2code.lowering.expressions.type_terms import substitute
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import (
     BOOL,

@@ -79,5 +79,5 @@ def _compiler() -> tuple[object, ...]:
     path = shutil.which(shlex.split(name)[0]) if name else None
     if path is None:
         return (name,)
-    status = os.stat(path)  # noqa: PTH116
+    status = os.stat(path)  # noqa: PTH116 - for each file
     return name, os.path.realpath(path), status.st_size, status.st_mtime_ns, status.st_ctime_ns

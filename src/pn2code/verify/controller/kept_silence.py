@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import reduce
 
 from pn2code.properties.questions import Questions
-from pn2code.verify.controller.running import Ready, Silence
+from pn2code.verify.controller.silence import Ready, Silence
 
 
 def kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:

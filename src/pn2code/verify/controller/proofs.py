@@ -30,6 +30,7 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_BEYOND, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
 from pn2code.verify.controller.control_types import MOST_IN_TURNS, MOST_STATES, Check, Control, Plan
+from pn2code.verify.controller.not_looked import not_looked
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
 from pn2code.verify.exploring import place_capacity
@@ -199,9 +200,7 @@ def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) 
         return None
     if found is None and any(i.code == TOOL_MISSING for i in own.errors):
         poses = plan.poses(partition)
-        return control.not_looked(
-            "compiler", partition, plan.capacities, poses=poses, bounds=plan.bounds
-        )
+        return not_looked("compiler", partition, plan.capacities, poses=poses, bounds=plan.bounds)
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
     if found is not None and all(i.code != BEYOND_ROOM for i in own.items):
@@ -309,7 +308,7 @@ _OPEN_HINTS = {
 def _not_asked(partition: Partition, poses: Poses | None) -> Iterator[str]:
     """What nothing is known of, and what is seen without exploring."""
     yield UNCHECKED
-    for check in control.not_looked("", partition, poses=poses).checks:
+    for check in not_looked("", partition, poses=poses).checks:
         yield (
             f"  {check.name}: unchecked ({control_types.MEANINGS[check.name]})"
             if check.answer == "unknown"

@@ -169,7 +169,7 @@ def ordinal(c: Colset, value: Value) -> int:
             assert isinstance(found, int) and isinstance(c.low, int)
             return found - c.low
         case Kind.INDEX:
-            argument = getattr(found, "argument")  # noqa: B009
+            argument = getattr(found, "argument")  # noqa: B009 - a Data
             assert isinstance(c.low, int)
             return int(argument) - c.low
         case Kind.ALIAS | Kind.SUBSET:
@@ -180,12 +180,12 @@ def ordinal(c: Colset, value: Value) -> int:
                 total = total * colours(part) + ordinal(part, own)
             return total
         case Kind.UNION:
-            tag = int(getattr(found, "tag"))  # noqa: B009
+            tag = int(getattr(found, "tag"))  # noqa: B009 - a Data
             before: Sequence[Colset | None] = c.components[:tag]
             first = sum(colours(part) if part is not None else 1 for part in before)
             own_part = c.components[tag]
             if own_part is None:
                 return first
-            return first + ordinal(own_part, getattr(found, "argument"))  # noqa: B009
+            return first + ordinal(own_part, getattr(found, "argument"))  # noqa: B009 - a Data
         case _:
             raise ValueError(f"colours of `{c.name}` have no numbers")

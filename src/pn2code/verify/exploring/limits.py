@@ -66,6 +66,7 @@ class Limits:
         turns_from: states of a cell from which on its programs are looked at in turns, if that keeps what is asked;
             None: never.
         most_in_turns: states that are looked at then; None: as many as `max_states` says.
+        unfolds: whether the unfolded net is asked where a limit of states, time or memory ends an exploration.
         counts_from: states from which on tokens are counted up to a limit only, if that is enough; None: never, nor
             where it is more than `turns_from`.
     """
@@ -85,6 +86,7 @@ class Limits:
     turns_from: int | None = TURNS_FROM
     most_in_turns: int | None = None
     counts_from: int | None = COUNTS_FROM
+    unfolds: bool = False
 
 
 def default_memory() -> int:

@@ -67,7 +67,8 @@ class Unfolded:
         has_dead: whether there is a dead marking; None: not known. `dead_run`: a run to one, and its steps.
         never: transitions that never occur, by index; `open_`: those of which it is not known.
         bounds: most tokens of places, by index, where it is known.
-        told: the answers to properties, by name.
+        told: the answers to properties, by name. `refused`: why others were not asked, as clauses.
+        is_alone: it was asked instead of an exploration, not after one.
     """
 
     why: str = ""
@@ -82,6 +83,13 @@ class Unfolded:
     open_: tuple[int, ...] = ()
     bounds: Mapping[int, int] | None = None
     told: Mapping[str, Told] | None = None
+    refused: Mapping[str, str] | None = None
+    is_alone: bool = False
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether it could be asked."""
+        return not self.why
 
     @property
     def is_whole(self) -> bool:

@@ -52,12 +52,16 @@ def report(
         counts: how all answers have come out; None: as these answers to properties.
     """
     counts = counts or Counts.of(map(kind_of, answers))
-    parts = [_head(net, found, written, counts), _statistics(found)]
+    parts = [_head(net, found, written, counts)]
+    is_explored = found.unfolded is None or not found.unfolded.is_alone
+    if is_explored:
+        parts.append(_statistics(found))
     if found.bounds is not None:
         parts.append(_boundedness(net, found))
     if found.graph is not None:
         parts.append(_home(found, found.graph))
-    parts.append(_liveness(net, found))
+    if is_explored:
+        parts.append(_liveness(net, found))
     if found.graph is not None:
         parts.append(_fairness(net, found.graph))
     if answers:
@@ -82,9 +86,10 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None, counts: Co
         "The net was explored as it is compiled for the explorer; `pn2code conform` compares this, and the generated",
         "programs, with the net.",
     ]
-    if not found.complete:
-        lines += textwrap.wrap(f"PARTIAL: {header(net, found, counts)}", _WIDTH)
-    lines += [f"{name + ':':<12}{what}." for name, what in basis.complete(found)]
+    if partial := header(net, found, counts):
+        lines += textwrap.wrap(f"PARTIAL: {partial}", _WIDTH)
+    if found.unfolded is None or not found.unfolded.is_alone:
+        lines += [f"{name + ':':<12}{what}." for name, what in basis.complete(found)]
     for name, what in unfolded_text.rows(net, found):
         lines += textwrap.wrap(f"{name + ':':<18}{what}.", _WIDTH, subsequent_indent=" " * 18)
     if found.swarm is not None:

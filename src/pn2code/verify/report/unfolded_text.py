@@ -36,7 +36,7 @@ def rows(net: FlatNet, found: Exploration) -> Iterator[tuple[str, str]]:
 
 def number(n: int) -> str:
     """With commas; of a long one the first digits: `1.2345e+40`."""
-    text = str(n)
+    text = str(n)  # of any length: whoever has counted so far allows it
     return f"{n:,}" if len(text) <= _DIGITS else f"{text[0]}.{text[1:5]}e+{len(text) - 1}"
 
 
@@ -47,7 +47,7 @@ def _dead(u: Unfolded) -> str:
     if not u.has_dead:
         return f"none{by}"
     if u.dead_run is None:
-        return f"there are some{by}; random walks have found no run to one"
+        return f"there are some{by}; no run to one was found in time"
     file, steps = u.dead_run
     return f"there are some{by} (a run of {steps} step{'s' * (steps != 1)}: {file})"
 

@@ -7,3 +7,4 @@ structure ModelTime = struct
     fun mkstr t = toString t
     fun col (colour @ _) = colour
 end
+structure CPN'Time = ModelTime
