@@ -137,6 +137,10 @@ NEVER = {
     "./dev bench --firings": "the same",
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
+    "./dev bench --swarm": "the same",
+    "pn2code verify net.cpn --swarm 64": "a swarm never says yes; test_swarm_command has one",
+    "pn2code verify net.cpn --swarm 10000 --scheduler tcp://host:8786 --max-states 100000000 --memory 4096": "there is "
+    "no such host; a scheduler elsewhere is asked as the one here",
     "./dev bench --play": "the same, in a browser",
     "./dev bench --compile": "the same",
     "./dev bench --compile --sizes 102 201 501 1002": "the same",

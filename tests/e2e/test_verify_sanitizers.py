@@ -82,6 +82,11 @@ def test_sanitized(sanitized: Explorers, tmp_path: Path, what: str) -> None:
     assert len(list(tmp_path.glob("*.trace.jsonl"))) == 3
     for kind in ("hash", "bitstate"):
         explorers.explore(bags, "--approximate", kind, "--threads", 2)
+    for how in (("--shuffle", 4), ("--walk", "--max-states", 300)):
+        one = explorers.explore(
+            bags, "--swarm", 3, *how, "--sketch", 20, "--trace-to", tmp_path / "s"
+        )
+        assert one.report["swarm"]["dead_trace"]["steps"] == 4
     explorers.explore(bags, "--max-states", 100)
     asked = ask(explorers, BAGS, CONDITIONS, "asked")
     whole, answers = asked.say(QUESTIONS, "--threads", 2)

@@ -145,6 +145,9 @@ def main() -> int:
     parser.add_argument(
         "--against", type=Path, metavar="CHECKOUT", help="only commands, beside those of a checkout"
     )
+    parser.add_argument(
+        "--swarm", action="store_true", help="only a swarm by one worker and by two, and a model"
+    )
     parser.add_argument("--play", action="store_true", help="only a click in the page of `play`")
     parser.add_argument("--replay", action="store_true", help="only the replay page in a browser")
     parser.add_argument(
@@ -171,6 +174,10 @@ def main() -> int:
         from tools.bench import replay  # needs Playwright
 
         return replay.measure(options.replay_of, options.repeat, options.minutes)
+    if options.swarm:
+        from tools.bench import swarm  # needs `distributed`
+
+        return swarm.measure(min(options.repeat, 3))
     if options.against:
         return pairs.measure(options.against, options.repeat)
     if options.compile and options.sizes is not None:

@@ -25,12 +25,16 @@
 #include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
+#include "swarm/explore_swarm.h"
 #include "pn/pn_file.h"
 
 #define MEBI              ((uint64_t)1U << 20U)
 #define DEFAULT_MEMORY    (4096U * MEBI)
 #define DEFAULT_ARENA     (64U * MEBI)
 #define DEFAULT_DEAD      1000U
+#define DEFAULT_DEPTH     1000U
+#define MOST_DEPTH        ((uint64_t)1U << 24U)
+#define MOST_SKETCH       ((uint64_t)1U << 16U)
 #define DEFAULT_LAY_AGAIN ((uint64_t)1U << 18U)
 
 static ex_run_t s_run;
@@ -70,6 +74,13 @@ static void print_help(void)
         "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
         "  --seed N            of random numbers (default 1)\n"
         "  --shuffle N         depth first, successors the other way round (1), or by chance, of which N is the seed\n"
+        "  --swarm SEED        one of many searches, by one thread, with bit states: depth first with --shuffle, or\n"
+        "                      --walk; the hash and the order are its own, and each finding has its run\n"
+        "  --walk              of it: from the initial state on at random, again and again; --max-states: so many "
+        "steps\n"
+        "  --max-depth N       of it: most steps of a run (default 1000)\n"
+        "  --sketch N          of it: so many hashes of markings that were looked at (default 0)\n"
+        "  --ending Q,R,..     of it: questions that end it when they are decided\n"
         "  --still             traces say that these are the same at each step\n"
         "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
         "  --whole P,Q,..      places of which all colours are printed\n"
@@ -117,6 +128,11 @@ static bool read_threads(const char *text, uint32_t *threads)
     const bool is_fine = read_number(text, (uint64_t)EX_MOST_THREADS, &number) && (number > 0U);
     *threads = (uint32_t)number;
     return is_fine;
+}
+
+static bool read_depth(const char *text, uint64_t *depth)
+{
+    return read_number(text, (uint64_t)MOST_DEPTH, depth) && (*depth > 0U);
 }
 
 static bool read_order(const char *text, bool *is_depth_first)
@@ -189,6 +205,10 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--most-heaped") == 0) && read_number(value, UINT64_MAX, &options->most_heaped))
            || ((strcmp(option, "--initial") == 0) && read_text(value, &options->initial))
            || ((strcmp(option, "--shuffle") == 0) && read_number(value, UINT64_MAX, &options->shuffle))
+           || ((strcmp(option, "--swarm") == 0) && read_number(value, UINT64_MAX, &options->swarm))
+           || ((strcmp(option, "--max-depth") == 0) && read_depth(value, &options->max_depth))
+           || ((strcmp(option, "--sketch") == 0) && read_number(value, (uint64_t)MOST_SKETCH, &options->sketch))
+           || ((strcmp(option, "--ending") == 0) && read_text(value, &options->ending))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 
@@ -199,6 +219,7 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
                                .memory = DEFAULT_MEMORY,
                                .arena = DEFAULT_ARENA,
                                .seed = 1U,
+                               .max_depth = DEFAULT_DEPTH,
                                .lay_again = DEFAULT_LAY_AGAIN,
                                .has_graph = true,
                                .has_notes = true,
@@ -217,6 +238,8 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
             options->is_still = true;
         } else if (strcmp(option, "--no-notes") == 0) {
             options->has_notes = false;
+        } else if (strcmp(option, "--walk") == 0) {
+            options->is_walk = true;
         } else if (strcmp(option, "--progress") == 0) {
             options->shows_progress = true;
         } else if (strcmp(option, "--help") == 0) {
@@ -228,6 +251,14 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
             return false;
         }
     }
+    if (options->swarm != 0U) {
+        options->is_bitstate = true;
+        options->is_hashed = false;
+        options->is_depth_first = true;
+        options->has_graph = false;
+        options->threads = 1U;
+    }
+    options->is_walk = options->is_walk && (options->swarm != 0U);
     /* What is remembered of transitions does not say which of them a program asks. */
     options->has_notes = options->has_notes && (options->turns == NULL);
     return true;
@@ -401,6 +432,10 @@ static bool make(ex_run_t *run)
     }
     run->has_bounds = true;
     ex_telling_make(run);
+    if (options->swarm != 0U) {
+        run->turned = (ex_key_t){ options->swarm * 0x9e3779b97f4a7c15U, options->swarm * 0xd6e8feb86659fd93U };
+        return ex_swarm_make(run);
+    }
     return true;
 }
 
@@ -429,6 +464,10 @@ static int explore(ex_run_t *run)
         && (strcmp(run->error.kind, "exception") == 0)) {
         ex_phase(run, "trace");
         ex_follow_error(run);
+    }
+    if (is_explored && (run->swarm != NULL) && atomic_load(&run->has_begun) && (atomic_load(&run->why) == (int)EX_ERROR)
+        && (strcmp(run->error.kind, "exception") == 0)) {
+        ex_follow_way_error(run);
     }
     if (is_explored && (run->queries != NULL)) {
         ex_report_keep(run);

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "graph/explore_rescan.h"
+#include "swarm/explore_swarm.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_arena.h"
 #include "pn/pn_text.h"
@@ -163,6 +164,30 @@ void ex_follow_error(ex_run_t *run)
     revive(&run->worker[0]);
 }
 
+void ex_follow_way_error(ex_run_t *run)
+{
+    ex_worker_t *const worker = &run->worker[0];
+    const ex_error_t met = run->error;
+    ex_raised_t *const raised = ex_alloc(&run->memory, sizeof *raised);
+    const ex_key_t key = run->swarm->way[run->swarm->depth];
+    clear(run);
+    if ((raised != NULL) && (run->options.error_trace_to != NULL)) {
+        (void)snprintf(raised->path, sizeof raised->path, "%s0.trace.jsonl", run->options.error_trace_to);
+        raised->steps = ex_swarm_write(run, raised->path, "error");
+        clear(run);
+    } else if (raised != NULL) {
+        raised->steps = -1;
+    }
+    if ((raised != NULL) && (ex_successors(worker, &key, ignore, NULL) == EX_FAILED) && (run->error.kind != NULL)) {
+        raised->binding =
+            (run->error.transition >= 0) ? raising_binding(worker, (uint32_t)run->error.transition) : NULL;
+        run->raised = raised;
+    } else {
+        run->error = met;
+    }
+    revive(worker);
+}
+
 static void string_json(const char *string, FILE *out)
 {
     char quoted[2U * EX_PATH_SIZE];
@@ -179,8 +204,12 @@ void ex_raised_json(const ex_run_t *run, FILE *out)
         (void)fprintf(out, ", \"node\": null, \"binding\": null, \"trace\": null");
         return;
     }
-    (void)fprintf(out, ", \"node\": %" PRIu64 ", \"binding\": %s, \"trace\": ", raised->node,
-                  (raised->binding != NULL) ? raised->binding : "null");
+    if (raised->node > 0U) {
+        (void)fprintf(out, ", \"node\": %" PRIu64, raised->node);
+    } else {
+        (void)fprintf(out, ", \"node\": null"); /* states have no numbers */
+    }
+    (void)fprintf(out, ", \"binding\": %s, \"trace\": ", (raised->binding != NULL) ? raised->binding : "null");
     if (raised->steps < 0) {
         (void)fprintf(out, "null");
         return;

@@ -21,7 +21,13 @@ typedef struct ex_options {
     uint64_t seed;
     uint64_t shuffle;   /* the order of successors, depth first: 0 as they are found, 1 the other way round, others by
                          chance */
-    bool is_still;      /* traces say that random numbers are the same at each step */
+    uint64_t swarm;     /* seed of one of many searches: of its hash, of its walks (explore_swarm.c); 0: it is none */
+    bool is_walk;       /* it goes from the initial state on at random */
+    uint64_t max_depth; /* of it: most steps of a way */
+    uint64_t sketch;    /* of it: hashes of markings that it tells */
+    const char
+        *ending;   /* of it: questions that end it when they are decided, numbers with commas between; NULL: none */
+    bool is_still; /* traces say that random numbers are the same at each step */
     uint64_t lay_again; /* states after which the layout of keys is looked at once more */
     bool has_graph;     /* wanted */
     bool has_notes;     /* what transitions do is remembered (explore_local.c) */

@@ -14,6 +14,7 @@
 #include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "query/explore_early.h"
+#include "swarm/explore_swarm.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -148,6 +149,9 @@ static void print_report(ex_run_t *run, bool is_last, FILE *out)
     (void)fprintf(out, ",\n ");
     ex_graph_json(run, out);
     ex_queries_json(run, !is_last, out);
+    if (run->swarm != NULL) {
+        ex_swarm_json(run, out);
+    }
     (void)fprintf(out, "}\n");
 }
 

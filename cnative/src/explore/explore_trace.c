@@ -137,6 +137,31 @@ bool ex_part_name(char name[EX_PATH_SIZE], const char *path)
     return (length > 0) && ((size_t)length < (size_t)EX_PATH_SIZE);
 }
 
+/* A trace with its first line; `line` is what it writes in, and may be NULL. False: it cannot be had. */
+static bool begin_trace(const ex_run_t *run, pn_trace_t *trace, const char *path, char part[EX_PATH_SIZE], char *line)
+{
+    char members[64];
+    if ((line == NULL) || !ex_part_name(part, path) || !pn_trace_open(trace, part, line, LINE_SIZE)) {
+        return false;
+    }
+    (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64 "%s", run->options.seed,
+                   run->options.is_still ? ", \"still\": true" : "");
+    pn_trace_header_with(trace, &pn_net, "simulate", run->options.initial, members);
+    return true;
+}
+
+/* Gives it its name, if all is fine; else nothing is left of it. */
+static bool end_trace(pn_trace_t *trace, const char *path, const char *part, char *line, bool is_fine)
+{
+    is_fine = pn_trace_close(trace) && is_fine;
+    is_fine = is_fine && (rename(part, path) == 0);
+    if (!is_fine) {
+        (void)unlink(part);
+    }
+    free(line);
+    return is_fine;
+}
+
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path)
 {
     return ex_write_run(run, graph, node, path, NULL);
@@ -157,18 +182,14 @@ int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on
     ex_worker_t *const worker = &run->worker[0];
     pn_trace_t trace;
     char part[EX_PATH_SIZE];
-    char members[64];
     const uint64_t length = steps + 1U;
     int64_t elapsed = 0;
     char *const line = malloc(LINE_SIZE);
-    bool is_fine = (line != NULL) && ex_part_name(part, path) && pn_trace_open(&trace, part, line, LINE_SIZE);
+    bool is_fine = begin_trace(run, &trace, path, part, line);
     if (!is_fine) {
         free(line);
         return -1;
     }
-    (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64 "%s", run->options.seed,
-                   run->options.is_still ? ", \"still\": true" : "");
-    pn_trace_header_with(&trace, &pn_net, "simulate", run->options.initial, members);
     const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric;
     if (is_symmetric) {
         is_fine = write_walk(run, graph, on_path, length, &trace);
@@ -190,13 +211,32 @@ int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on
         const char *const usual = (EX_BIT(graph->dead, on_path[steps]) != 0U) ? "finished" : "steps";
         pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, (why != NULL) ? why : usual);
     }
-    is_fine = pn_trace_close(&trace) && is_fine;
-    is_fine = is_fine && (rename(part, path) == 0);
+    return end_trace(&trace, path, part, line, is_fine) ? (int64_t)steps : -1;
+}
+
+int64_t ex_write_keys(ex_run_t *run, const ex_key_t *way, uint64_t steps, const char *path, const char *why)
+{
+    ex_worker_t *const worker = &run->worker[0];
+    pn_trace_t trace;
+    char part[EX_PATH_SIZE];
+    char *const line = malloc(LINE_SIZE);
+    int64_t elapsed = 0;
+    bool is_fine = begin_trace(run, &trace, path, part, line);
     if (!is_fine) {
-        (void)unlink(part);
+        free(line);
+        return -1;
     }
-    free(line);
-    return is_fine ? (int64_t)steps : -1;
+    for (uint64_t i = 0U; is_fine && (i < steps); i++) {
+        step_search_t search = { .worker = worker, .wanted = way[i + 1U], .trace = &trace, .before = elapsed };
+        search.transition = ANY_TRANSITION;
+        is_fine = (ex_successors(worker, &way[i], write_step, &search) == EX_STOPPED) && search.is_found;
+        elapsed += worker->elapsed;
+    }
+    is_fine = is_fine && ex_load(worker, &way[steps]);
+    if (is_fine) {
+        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, why);
+    }
+    return end_trace(&trace, path, part, line, is_fine) ? (int64_t)steps : -1;
 }
 
 /* --- the whole graph ---------------------------------------------------------------------------------------------- */

@@ -345,6 +345,7 @@ _OUTSIDE = frozenset(
         "input-file",
         "input-missing",
         "report-unwritable",
+        "swarm-unavailable",
         "tool-missing",
     }
 )

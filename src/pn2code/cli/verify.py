@@ -41,6 +41,15 @@ from pn2code.cli.subject import Subject
 from pn2code.cli.verify_closing import ending
 from pn2code.cli.verify_full import full
 from pn2code.cli.verify_screen import screen
+from pn2code.cli.verify_swarm import (
+    SchedulerOption,
+    SwarmOption,
+    WorkersOption,
+    check_net,
+    check_options,
+    endings,
+    swarm_of,
+)
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
@@ -139,6 +148,9 @@ def verify(
             help="Store less than the whole markings. Some may be missed; the report says how many are expected to be."
         ),
     ] = None,
+    swarm: SwarmOption = None,
+    scheduler: SchedulerOption = None,
+    workers: WorkersOption = None,
     reduce: Annotated[
         list[Reduction],
         typer.Option(
@@ -312,6 +324,14 @@ def verify(
     check_kind(draw_to, GRAPH_KINDS, "--draw")
     check_kind(plot_to, PLOT_KINDS, "--plot")
     check_kind(report_to, (*PAGES, *_TEXTS), "--report")
+    reductions = () if no_reduction else tuple(dict.fromkeys(reduce))
+    unused = (
+        ("--order", order is not Order.BREADTH),
+        ("--approximate", approximate is not None),
+        ("--spill", spill is not None),
+        ("--threads", threads is not None),
+    )
+    check_options(swarm, scheduler, workers, reductions, unused)
     d = Diagnostics()
     try:
         with deadline.enforced():
@@ -319,6 +339,8 @@ def verify(
                 net, parse_values(settings), form, int_bits=int_bits, warnings=d, inputs=inputs
             )
             refuse_wide(opened.config, int_bits)
+            if swarm is not None:
+                check_net(opened)
             asked = question(opened, texts, file, d, found=found_properties)
             if unfold and opened.config is not None:
                 raise typer.BadParameter(
@@ -344,7 +366,7 @@ def verify(
         spill=spill,
         graph=graph or bool(asked),
         traces=most_traces,
-        reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
+        reductions=reductions,
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
         unfolds=unfold is not False,
@@ -355,7 +377,10 @@ def verify(
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
         TemporaryDirectory(prefix="pn2code-") as scratch,
+        swarm_of(swarm, scheduler, workers) as wanted_swarm,
     ):
+        if wanted_swarm is not None:
+            limits = replace(limits, swarm=wanted_swarm, approximation=Approximation.BITSTATE)
         checks = Checks(
             controller=check_controller,
             channel_model=check_channel_model,
@@ -376,7 +401,8 @@ def verify(
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
                 evidence=unnamed,
-                covering=not unbounded_ok,
+                covering=not unbounded_ok and swarm is None,
+                ending=endings(asked.plain),
                 progress=progress.update,
                 stage=progress.stage,
                 interrupted=interrupts.is_wanted,

@@ -46,9 +46,9 @@ def full(said: Said) -> str:
                 end = [] if run.loop is not None else why_it_ends(said, run.file, is_deadlock)
                 parts.append("\n".join([text_, *end]))
         for trace in found.traces:
-            parts.append(_told(said, trace, f"the dead marking {trace.node}"))
+            parts.append(_told(said, trace, trace.dead))
         if found.error_trace is not None:
-            goal = f"marking {found.error_trace.node}, in which an exception is raised"
+            goal = found.error_trace.raising
             path = _told(said, found.error_trace, goal)
             parts.append(f"{path}\n  then {error_text(net, found)}")
         orders = found.orders.raised if found.orders is not None else None
@@ -62,7 +62,7 @@ def full(said: Said) -> str:
 
 
 def _told(said: Said, trace: Trace, goal: str) -> str:
-    head = f"Shortest run to {goal}: {trace.steps} steps, {trace.file}"
+    head = f"{'Shortest run' if trace.node else 'Run'} to {goal}: {trace.steps} steps, {trace.file}"
     try:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:

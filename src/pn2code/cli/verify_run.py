@@ -55,7 +55,7 @@ def run_lines(said: Said, wrong: Sequence[Item], room: int) -> list[str]:
             return [f"The run for `{item.name}`:", *(cut if before > 0 else ()), *shown]
     if found.traces and not wrong and not said.answers and said.control is None:
         trace = found.traces[0]
-        return _last(said, trace.file, f"to the dead marking {trace.node}", most)
+        return _last(said, trace.file, f"to {trace.dead}", most)
     return []
 
 

@@ -10,7 +10,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis
 from pn2code.verify.exploring.result import Exploration, Known
-from pn2code.verify.report import control_text, unfolded_text
+from pn2code.verify.report import control_text, swarm_text, unfolded_text
 from pn2code.verify.report.text import bounded_places
 
 MOST_NAMES = 6
@@ -32,7 +32,9 @@ def sizes_of(said: Said) -> Iterator[str]:
         if name == "Components" and found.graph is not None:
             more = f": {found.graph.scc_nodes:,}"
         yield from row(name, what + more)
-    if found.approximation is not None:
+    if found.swarm is not None:
+        yield from row("Swarm", swarm_text.seen(found.swarm))
+    elif found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
         yield from row(
             "Approximate",

@@ -88,6 +88,7 @@ def of_bindings(
                 traces=None,
                 stem=f"bindings-{number}",
                 questions=questions,
+                ending=(),
                 predicates=about.predicates,
                 sizes=Sizes.start(split.net, opened.storage),
             )

@@ -379,7 +379,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
             guard_order.not_there(opened.flat, t.index)
             or "CPN Tools may see first that tokens are missing, or that another condition is false, and raise nothing"
         )
-    if error.get("node") is None:
+    if error.get("node") is None and found.swarm is None:
         notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")

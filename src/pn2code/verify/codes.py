@@ -11,6 +11,13 @@ EXPLORER_FAILED = register(
     "limit with `--memory`, so that it stops in time and reports what it has seen; otherwise this is a bug in "
     "pn2code.",
 )
+SWARM_UNAVAILABLE = register(
+    "swarm-unavailable",
+    "the workers of a swarm are not there",
+    "`verify --swarm` has its searches carried out by `dask.distributed`, which `pip install 'pn2code[swarm]'` brings. "
+    "With `--scheduler ADDRESS` they are those of a scheduler that has been started elsewhere: it has to be reached "
+    "from here, and its workers need the same version of pn2code, and a C compiler.",
+)
 TIME_OVER = register(
     "time-over",
     "the time of `--max-seconds` was up before the work was done",

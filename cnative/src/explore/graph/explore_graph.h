@@ -100,6 +100,8 @@ int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, cons
 /* The same for the run through way[0] .. way[steps], by transition label[i] to way[i]; label NULL: by any. */
 int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on_path, const uint16_t *label,
                       uint64_t steps, const char *path, const char *why);
+/* The same for the run through the states of way[0] .. way[steps], which need not be stored; `why` it ends there. */
+int64_t ex_write_keys(ex_run_t *run, const ex_key_t *way, uint64_t steps, const char *path, const char *why);
 /* What a file is called while it is being written: the process's own, beside `path`. False: too long. */
 bool ex_part_name(char name[EX_PATH_SIZE], const char *path);
 /* The whole graph as lines of JSON. */

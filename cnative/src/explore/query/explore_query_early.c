@@ -6,6 +6,7 @@
  * which one is reported is found out by going through the known states in breadth-first order.
  */
 #include "explore_query.h"
+#include "../swarm/explore_swarm.h"
 #include "../search/explore_successors.h"
 #include "explore_early.h"
 
@@ -170,6 +171,9 @@ void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
         }
         if (!atomic_exchange(&question->is_decided, true)) {
             (void)atomic_fetch_sub(&queries->open_early, 1U);
+            if (run->swarm != NULL) {
+                ex_swarm_decided(worker, question, i, found);
+            }
             if (atomic_fetch_sub(&queries->open, 1U) == 1U) {
                 ex_stop(run, EX_DECIDED);
             }

@@ -14,6 +14,7 @@
 #include "explore_successors.h"
 #include "../explore_bounds.h"
 #include "../query/explore_early.h"
+#include "../swarm/explore_swarm.h"
 #include "explore_search.h"
 
 #include <math.h>
@@ -44,7 +45,8 @@ static ex_insertion_t insert(ex_run_t *run, const ex_pending_t *pending)
 /* Of hash compaction and bit states: another hash is all that is kept of a key. */
 static void shorten(const ex_run_t *run, ex_pending_t *pending)
 {
-    const ex_key_t turned = { pending->key.high ^ 0x6a09e667f3bcc909U, pending->key.low ^ 0xbb67ae8584caa73bU };
+    const ex_key_t turned = { pending->key.high ^ 0x6a09e667f3bcc909U ^ run->turned.low,
+                              pending->key.low ^ 0xbb67ae8584caa73bU ^ run->turned.high };
     const uint64_t other = ex_hash(&turned);
     if (run->options.is_bitstate) {
         pending->hash = other ^ (pending->hash * 0x9e3779b97f4a7c15U);
@@ -54,6 +56,13 @@ static void shorten(const ex_run_t *run, ex_pending_t *pending)
         pending->hash = ex_hash(&pending->stored);
         ex_store_prefetch(&run->store, pending->hash);
     }
+}
+
+bool ex_is_new(ex_run_t *run, const ex_key_t *key)
+{
+    ex_pending_t pending = { .key = *key, .stored = *key, .hash = ex_hash(key) };
+    shorten(run, &pending);
+    return insert(run, &pending) == EX_NEW;
 }
 
 bool ex_batch_begin(ex_worker_t *worker)
@@ -214,8 +223,31 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
     }
 }
 
-/* False when the run stops. */
-static bool expand(ex_worker_t *worker, const ex_key_t *key)
+/* One of many searches: some successors are not taken, or one is. */
+static bool on_last_arc(void *user, uint32_t transition, uint32_t times, const ex_key_t *found)
+{
+    ex_worker_t *worker = user;
+    (void)found;
+    worker->fired[transition] += times;
+    worker->arcs += times;
+    return true;
+}
+
+static bool on_walk_arc(void *user, uint32_t transition, uint32_t times, const ex_key_t *found)
+{
+    (void)on_last_arc(user, transition, times, found);
+    return ex_walk_take(user, transition, times, found);
+}
+
+static ex_found_t arcs_of_swarm(ex_worker_t *worker, const ex_key_t *key)
+{
+    if (worker->run->options.is_walk) {
+        return ex_arcs(worker, key, on_walk_arc, worker);
+    }
+    return ex_arcs(worker, key, ex_swarm_is_end(worker->run) ? on_last_arc : on_arc, worker);
+}
+
+bool ex_expand_state(ex_worker_t *worker, const ex_key_t *key)
 {
     ex_found_t found;
     if ((worker->early != NULL) && ex_early_avoids(worker, key)) {
@@ -227,6 +259,8 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
         found = ex_words_successors(worker, key->low);
     } else if (ex_flat_is_ready(worker)) {
         found = ex_flat_successors(worker, key);
+    } else if (worker->run->swarm != NULL) {
+        found = arcs_of_swarm(worker, key);
     } else {
         found = ex_arcs(worker, key, on_arc, worker);
     }
@@ -241,6 +275,9 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
     ex_bounds_see(worker);
     if (worker->early != NULL) {
         ex_early_see(worker, key, found);
+    }
+    if ((worker->run->swarm != NULL) && (found == EX_DEAD)) {
+        ex_swarm_dead(worker);
     }
     if ((worker->states % (uint64_t)REPORTED) == 0U) {
         report(worker);
@@ -378,7 +415,7 @@ static bool expand_chunk(ex_worker_t *worker, ex_chunk_t *chunk)
     for (chunk->taken = 0U; goes_on && (chunk->taken < chunk->count); chunk->taken++) {
         ex_key_t key;
         (void)ex_chunk_get(own->level, chunk, chunk->taken, &key);
-        goes_on = expand(worker, &key);
+        goes_on = ex_expand_state(worker, &key);
     }
     if (goes_on) {
         own->expanding = NULL;
@@ -404,7 +441,10 @@ static bool expand_stack(ex_worker_t *worker)
         }
         own->out->count--;
         own->depth = ex_chunk_get(search, own->out, own->out->count, &key) + 1U;
-        if (!expand(worker, &key) || !flush_all(worker)) {
+        if ((search->run->swarm != NULL) && !ex_swarm_at(worker, &key, own->depth - 1U)) {
+            return false;
+        }
+        if (!ex_expand_state(worker, &key) || !flush_all(worker)) {
             return false;
         }
     }
@@ -600,7 +640,7 @@ bool ex_explore(ex_run_t *run)
     const double cpu_started = ex_cpu_clock();
     if (begin(run, search)) {
         atomic_store(&run->has_begun, true);
-        ex_parallel(run, work, NULL);
+        ex_parallel(run, run->options.is_walk ? ex_walk : work, NULL);
     }
     sum_up(run, search);
     if (run->options.is_bitstate) {

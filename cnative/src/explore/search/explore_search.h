@@ -83,6 +83,10 @@ bool ex_add_new(ex_search_t *own, const ex_key_t *key);
 
 /* Before a batch is inserted: lets the store grow if need be. False when the run stops. */
 bool ex_batch_begin(ex_worker_t *worker);
+/* All that is done with a state. False when the run stops. */
+bool ex_expand_state(ex_worker_t *worker, const ex_key_t *key);
+/* Of bit states: whether a state seems not to have been seen; from now on it has been. */
+bool ex_is_new(ex_run_t *run, const ex_key_t *key);
 /* Whether it may be that there are as many states as there may be before the batch is inserted. */
 static inline bool ex_is_near_limit(const ex_run_t *run)
 {

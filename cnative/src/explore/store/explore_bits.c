@@ -37,15 +37,30 @@ bool ex_bits_make(ex_bits_t *bits, ex_memory_t *memory)
     return bits->word != NULL;
 }
 
+/* Bits that are set in word `i` of the sample. */
+static int set_in(const ex_bits_t *bits, uint64_t i)
+{
+    const ex_key_t key = { i, atomic_load_explicit(&bits->inserted, memory_order_relaxed) };
+    const uint64_t word =
+        atomic_load_explicit(&bits->word[ex_scaled(ex_hash(&key), bits->words)], memory_order_relaxed);
+    return __builtin_popcountll(word);
+}
+
+double ex_bits_occupancy(const ex_bits_t *bits)
+{
+    uint64_t sum = 0U;
+    for (uint64_t i = 0U; i < (uint64_t)SAMPLE; i++) {
+        sum += (uint64_t)set_in(bits, i);
+    }
+    return (double)sum / (64.0 * (double)SAMPLE);
+}
+
 /* The probability that three bits of a word are set. */
 static double measured(const ex_bits_t *bits)
 {
     double sum = 0.0;
     for (uint64_t i = 0U; i < (uint64_t)SAMPLE; i++) {
-        const ex_key_t key = { i, atomic_load_explicit(&bits->inserted, memory_order_relaxed) };
-        const uint64_t word =
-            atomic_load_explicit(&bits->word[ex_scaled(ex_hash(&key), bits->words)], memory_order_relaxed);
-        const double set = (double)__builtin_popcountll(word);
+        const double set = (double)set_in(bits, i);
         sum += (set * (set - 1.0) * (set - 2.0)) / (64.0 * 63.0 * 62.0);
     }
     return sum / (double)SAMPLE;

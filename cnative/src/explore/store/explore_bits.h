@@ -24,6 +24,8 @@ bool ex_bits_make(ex_bits_t *bits, ex_memory_t *memory);
 /* `hash` has to be a good one, and is all that counts of a state. */
 ex_insertion_t ex_bits_insert(ex_bits_t *bits, uint64_t hash);
 bool ex_bits_hold(const ex_bits_t *bits, uint64_t hash);
+/* The part of the bits that are set, from a sample. */
+double ex_bits_occupancy(const ex_bits_t *bits);
 /* The probability that at least one state was missed. */
 double ex_bits_omission(ex_bits_t *bits);
 

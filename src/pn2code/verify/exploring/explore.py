@@ -43,6 +43,7 @@ from pn2code.verify.exploring.reductions import (
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.time_reduction import why_not_reducible
 from pn2code.verify.exploring.turns import Turns
+from pn2code.verify.swarm import searching
 
 Progress = Callable[[Mapping[str, Any]], None]
 """Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
@@ -102,6 +103,7 @@ class ExploreOptions:
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
+        ending: of a swarm: the numbers of the questions of which a decided one ends it.
         shuffle: depth first, the order of successors: 0 as they are found, 1 the other way round, others by chance.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
@@ -128,6 +130,7 @@ class ExploreOptions:
     bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
     covering: bool = False
+    ending: tuple[int, ...] = ()
     shuffle: int = 0
     pace: float = 0.5
     progress: Progress = _nothing
@@ -235,6 +238,7 @@ def _explored(
 
     # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
     is_first = options.quick or len(net.transitions) > programs.MANY
+    is_first = is_first and limits.swarm is None
     first: Mapping[str, Any] | None = None
     compiling = 0.0
     while True:
@@ -271,10 +275,18 @@ def _explored(
                 first_states = options.first_states or programs.FIRST_STATES
                 most = limits.max_states or first_states
                 own = replace(limits, max_states=min(most, first_states))
-            arguments = _arguments(own, chosen, sizes, options)
-            arguments += ["--still"] if nondeterminism.draws(net) else []
-            deciding = replace(options, progress=_nothing) if is_limited else options
-            found = run_with_tables(net, program, arguments, chosen, deciding, limits, d, search)
+            still = ["--still"] if nondeterminism.draws(net) else []
+            if limits.swarm is None:
+                arguments = [*_arguments(own, chosen, sizes, options), *still]
+                deciding = replace(options, progress=_nothing) if is_limited else options
+                found = run_with_tables(
+                    net, program, arguments, chosen, deciding, limits, d, search
+                )
+            else:
+                arguments = [*_of_all(chosen, sizes, options), *still]
+                found = searching.search(
+                    net, program, made, arguments, options, limits, limits.swarm, d
+                )
         if found is None:
             return None
         if is_limited and _is_too_much(found, own, limits):
@@ -372,7 +384,6 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
         ("--threads", limits.threads),
         ("--order", limits.order.value),
         ("--shuffle", options.shuffle or None),
-        ("--arena", sizes.memory >> 20),
         ("--max-states", limits.max_states),
         ("--max-seconds", None if seconds is None else max(seconds, LEAST_SECONDS)),
         ("--late-seconds", late),
@@ -384,7 +395,6 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
         ("--traces", limits.traces if options.traces else None),
         ("--error-trace-to", options.traces and options.traces / f"{options.stem}.error-"),
         ("--query-trace-to", options.evidence and options.evidence / f"{options.stem}.query-"),
-        ("--initial", options.initial),
         ("--write-graph", options.graph),
         ("--write-limit", options.graph_limit),
         ("--multiset-limit", options.colours),
@@ -393,11 +403,21 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
         ("--heaps", ",".join(map(str, sorted(options.heaps))) or None),
         ("--most-heaped", MOST_HEAPED if options.heaps else None),
         ("--progress-every", options.pace),
-        *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]
-    arguments = [text for name, value in given if value is not None for text in (name, str(value))]
+    arguments = _of_all(chosen, sizes, options)
+    arguments += [text for name, value in given if value is not None for text in (name, str(value))]
     arguments += ["--write-part"] if options.part else []
     return arguments + ["--progress"] + ([] if limits.graph else ["--no-graph"])
+
+
+def _of_all(chosen: Chosen, sizes: Sizes, options: ExploreOptions) -> list[str]:
+    """What is the same for each search of a swarm as for an explorer that sees all."""
+    given: list[tuple[str, object]] = [
+        ("--arena", sizes.memory >> 20),
+        ("--initial", options.initial),
+        *(("--reduce", reduction.value) for reduction in chosen.reductions),
+    ]
+    return [text for name, value in given if value is not None for text in (name, str(value))]
 
 
 def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:

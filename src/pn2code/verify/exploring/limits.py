@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pn2code.base.deadline import NEVER, Deadline
 from pn2code.base.frozen import frozen
+from pn2code.verify.swarm.pool import Swarm
 
 REACHED = ("states", "seconds", "memory")
 """Why an exploration has ended, where it was for a limit."""
@@ -56,6 +57,8 @@ class Limits:
         threads: at least 1.
         order: breadth first gives shortest traces.
         approximation: None: every marking is stored completely.
+        swarm: many small searches instead of one that sees all; None: one. Then `max_states` and `memory` are those of
+            each of them.
         spill: a folder for tables that are larger than memory, None: none.
         graph: whether the graph is analysed (components, home markings, liveness, fairness).
         traces: most dead markings that get a trace.
@@ -75,6 +78,7 @@ class Limits:
     threads: int = 1
     order: Order = Order.BREADTH
     approximation: Approximation | None = None
+    swarm: Swarm | None = None
     spill: Path | None = None
     graph: bool = True
     traces: int = 1

@@ -89,11 +89,22 @@ class Graph:
 
 @frozen
 class Trace:
-    """A shortest run to a marking."""
+    """A run to a marking, a shortest one unless the marking has no number (0): a swarm gives none."""
 
     node: int
     file: Path
     steps: int
+
+    @property
+    def dead(self) -> str:
+        """What the marking is called where nothing is enabled."""
+        return f"the dead marking {self.node}" if self.node else "a dead marking"
+
+    @property
+    def raising(self) -> str:
+        """What it is called where an exception is raised."""
+        named = f"marking {self.node}" if self.node else "a marking"
+        return f"{named}, in which an exception is raised"
 
     @staticmethod
     def of(found: Mapping[str, Any]) -> Trace:
@@ -196,6 +207,7 @@ class Exploration:
         known: of "counted": what is known of all markings nevertheless.
         orders: what CPN Tools may raise in another order; None: nothing, or it was not looked at.
         unfolded: what the unfolded net tells where a limit has ended the exploration; None: it was not looked at.
+        swarm: how many searches of a swarm have seen what (`swarm.merging`); None: it was one exploration.
         told: whether the explorer has told what it has seen; else how many markings that were is all that is known.
     """
 
@@ -229,6 +241,7 @@ class Exploration:
     orders: OtherOrders | None = None
     told: bool = True
     unfolded: Unfolded | None = None
+    swarm: Mapping[str, Any] | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -292,6 +305,7 @@ class Exploration:
             arena=found.get("arena"),
             different=tuple(found.get("different") or ()),
             told=found.get("told", True),
+            swarm=found.get("swarm"),
         )
 
     @property

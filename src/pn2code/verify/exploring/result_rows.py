@@ -57,6 +57,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "reductions": list(found.reductions),
         "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
+        "swarm": dict(found.swarm) if found.swarm else None,
         "error": dict(found.error) if found.error else None,
         "other_orders": _orders_row(net, found.orders),
         "counted": _known_row(net, found.known),

@@ -121,7 +121,7 @@ class Pictures:
         """Why there is no picture, and what to do; "" when there is one."""
         smaller = "a smaller space: `--set NAME=VALUE`, `--reduce`; `--plot` draws how the exploration went"
         if found.approximation is not None:
-            return "the markings are not stored with `--approximate`", "leave it out"
+            return "the markings are not stored with `--approximate` or `--swarm`", "leave it out"
         if not found.complete:
             return "the exploration is not complete", smaller
         if found.nodes > self._most or found.arcs > self._most * _MOST_ARCS:

@@ -22,7 +22,7 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.result import Exploration, Graph
 from pn2code.verify.exploring.result_rows import cut
-from pn2code.verify.report import control_text, properties_text, unfolded_text
+from pn2code.verify.report import control_text, properties_text, swarm_text, unfolded_text
 
 _RULE = "-" * 72
 _WIDTH = 110
@@ -92,7 +92,9 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None, counts: Co
         lines += [f"{name + ':':<12}{what}." for name, what in basis.complete(found)]
     for name, what in unfolded_text.rows(net, found):
         lines += textwrap.wrap(f"{name + ':':<18}{what}.", _WIDTH, subsequent_indent=" " * 18)
-    if found.approximation is not None:
+    if found.swarm is not None:
+        lines += textwrap.wrap(f"SWARM: {swarm_text.seen(found.swarm)}.", _WIDTH)
+    elif found.approximation is not None:
         lines.append(
             f"APPROXIMATE ({found.approximation['kind']}): a marking may have been taken for another one; the "
             f"probability\nthat any was omitted is about {found.approximation['omission_probability']:.2g}.\n"

@@ -31,7 +31,7 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.exploring.result_rows import cut
-from pn2code.verify.report import control_text, html, properties_text, unfolded_text
+from pn2code.verify.report import control_text, html, properties_text, swarm_text, unfolded_text
 from pn2code.verify.report.text import bounded_places, left_out
 
 MOST_STEPS = 200
@@ -201,7 +201,9 @@ def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str
     else:
         text = f"Partial: {header(net, found, counts)}"
         said.append({"kind": "open", "text": text})
-    if found.approximation is not None:
+    if found.swarm is not None:
+        said.append({"kind": "open", "text": f"Swarm: {swarm_text.seen(found.swarm)}."})
+    elif found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
         text = f"Approximate ({kind}): the probability that a marking was omitted is about {omitted:.2g}."
         said.append({"kind": "open", "text": text})
@@ -332,8 +334,8 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
 
 def _traces(player: _Player, found: Exploration) -> Iterator[dict[str, Any]]:
     for trace in found.traces:
-        yield {**player.trace(trace), "goal": f"the dead marking {trace.node}", "then": ""}
+        yield {**player.trace(trace), "goal": trace.dead, "then": ""}
     if found.error_trace is not None:
-        goal = f"marking {found.error_trace.node}, in which an exception is raised"
+        goal = found.error_trace.raising
         then = f"Then {error_text(player.net, found).replace('`', '')}."
         yield {**player.trace(found.error_trace), "goal": goal, "then": then}
