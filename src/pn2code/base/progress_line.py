@@ -23,6 +23,7 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import IO, Self
 
+from pn2code.base.handed_on import to_parent
 from pn2code.base.how_far import listening
 
 PLAIN_PERIOD_S = 10.0
@@ -75,6 +76,7 @@ class Line:
         self._clock = clock
         self._told = clock() if patient else 0.0
         self._is_patient = patient
+        self._parent = to_parent()
         self._first = first
         self._written = False
         self._text, self._said = "", 0.0
@@ -88,7 +90,7 @@ class Line:
     @property
     def is_heard(self) -> bool:
         """Whether anything that is said is written."""
-        return self._shown or self._is_plain
+        return self._shown or self._is_plain or self._parent is not None
 
     def __enter__(self) -> Self:
         self._listening.__enter__()
@@ -141,6 +143,7 @@ class Line:
             more: makes what stands behind the seconds, whenever they are shown.
             since: the moment from which they are counted; None: now.
         """
+        self._hand_on(text)
         with _WRITING:
             now = self._clock()
             self._text, self._suffix = text, more
@@ -153,12 +156,14 @@ class Line:
     def stage(self, text: str) -> None:
         """Shows a text that begins a new part of the work: it is a line of its own where lines stay."""
         if self._is_plain and not self._is_patient:
+            self._hand_on(text)
             self._write_line(text)
         else:
             self.say(text)
 
     def say(self, text: str) -> None:
         """Shows a text instead of the one before; what the terminal's width cannot hold is left out."""
+        self._hand_on(text)
         if self._is_plain and self._clock() - self._told >= PLAIN_PERIOD_S:
             self._write_line(text)
         if self._shown:
@@ -166,6 +171,10 @@ class Line:
                 self._text, self._said, self._written = text, self._clock(), True
                 self._begun = self._suffix = None
                 self._show(text)
+
+    def _hand_on(self, text: str) -> None:
+        if self._parent is not None:
+            self._parent(text)
 
     def _show(self, text: str) -> None:
         # A text that went on in a second row would leave the first one behind.

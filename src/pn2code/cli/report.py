@@ -119,11 +119,16 @@ def report(
 
     line = Line(first="")
 
+    def name(step: Step) -> str:
+        return f"{step.name} ({1 + wanted.index(step)} of {len(wanted)})"
+
+    def say(step: Step, text: str) -> None:
+        line.say(f"{name(step)}: {text}")
+
     def told(step: Step, done: Done | None) -> None:
         if done is None:
             console.print(f"{step.command}", style="dim", soft_wrap=True)
-            what = f"{step.name} ({1 + wanted.index(step)} of {len(wanted)})"
-            line.turn_to(what)
+            line.turn_to(name(step))
         else:
             line.clear()
             ended = (
@@ -133,7 +138,7 @@ def report(
 
     try:
         with line:
-            carried = steps.carry_out(wanted, out, told)
+            carried = steps.carry_out(wanted, out, told, say)
         chapters = [findings.read(done, out) for done in carried]
         left_out = _left_out(config, layouts, backend)
         changed = subject.changed(_subject(path, config, inputs))

@@ -5,6 +5,7 @@ Each is a process of its own with the arguments that are printed in the report: 
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -12,6 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.base.handed_on import hearing
 
 JSON = ".json"
 PROGRAMS = "generated"
@@ -163,7 +165,10 @@ def _run(begun: Sequence[str], layout: str, backend: str, needed: str) -> Step:
 
 
 def carry_out(
-    wanted: Sequence[Step], folder: Path, told: Callable[[Step, Done | None], None]
+    wanted: Sequence[Step],
+    folder: Path,
+    told: Callable[[Step, Done | None], None],
+    say: Callable[[Step, str], None],
 ) -> list[Done]:
     """Runs the commands one after the other in a folder.
 
@@ -171,6 +176,7 @@ def carry_out(
         wanted: the steps.
         folder: where the results go; it exists.
         told: of each step before and after it.
+        say: how far a step is, in words; called by another thread.
 
     Raises:
         OSError: a file of the folder cannot be written, or Python cannot be started again.
@@ -180,22 +186,28 @@ def carry_out(
         failed = [d.step.name for d in found if d.step.name in step.needs and d.code != 0]
         told(step, None)
         why = f"`{failed[0]}` has not succeeded" if failed else ""
-        done = Done(step, None, why=why) if why else _carried_out(step, folder)
+        done = Done(step, None, why=why) if why else _carried_out(step, folder, say)
         found.append(done)
         told(step, done)
     return found
 
 
-def _carried_out(step: Step, folder: Path) -> Done:
+def _carried_out(step: Step, folder: Path, say: Callable[[Step, str], None]) -> Done:
     begun = time.monotonic()
     errors = folder / f"{Path(step.said).stem}.log"
-    with (folder / step.said).open("wb") as said, errors.open("wb") as complaints:
+    with (
+        (folder / step.said).open("wb") as said,
+        errors.open("wb") as complaints,
+        hearing(lambda text: say(step, text)) as (variables, files),
+    ):
         process = subprocess.Popen(
             [sys.executable, "-m", "pn2code", step.verb, *step.arguments],
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=said,
             stderr=complaints,
+            env={**os.environ, **variables},
+            pass_fds=files,
         )
         try:
             code = process.wait()
