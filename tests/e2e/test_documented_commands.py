@@ -123,6 +123,8 @@ LONG = {
     "pn2code verify examples/timed --reduce time --no-found --no-controller --no-medium": "the same with another "
     "value is typed in each run of the tests",
     "pn2code verify philosophers.cpn --set n=15 --plot plot.svg": "a large state space",
+    "pn2code verify examples/philosophers/philosophers.cpn --set n=1000 --unfold --no-found --max-seconds 300": "the "
+    "same with fewer is typed in each run of the tests",
     "pn2code simulate mynet.cpn --steps 1000000 --trace run.trace.jsonl": "a long trace",
     **{f"pn2code check examples/{name}": CELLS for name in OTHERS},
     **{f"pn2code simulate examples/{name} --seed 5": LIKE_SORTING for name in OTHERS},

@@ -96,7 +96,7 @@ def test_limits_leave_answers_open(root: Path) -> None:
     found = net.verify("deadlock free", max_states=10, unfold=False)
     assert not found.is_complete
     assert found.verdict == "inconclusive"
-    assert net.verify("deadlock free", max_states=10).verdict == "no"
+    assert net.verify("deadlock free", max_states=10, max_seconds=600).verdict == "no"
 
 
 def test_what_is_wrong_is_raised(tmp_path: Path) -> None:

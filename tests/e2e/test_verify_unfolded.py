@@ -63,7 +63,8 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def verify(*arguments: object) -> tuple[int, str]:
-    result = CliRunner().invoke(app, ["verify", *map(str, arguments)])
+    timed = ("--max-seconds", "600")  # on a busy machine, too
+    result = CliRunner().invoke(app, ["verify", *map(str, arguments), *timed])
     assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
     return result.exit_code, result.stdout
 

@@ -8,6 +8,7 @@ from random import Random
 
 from helpers import netbuilder
 from helpers.unfoldable_nets import nothing_seen, properties_of, unfoldable_net
+from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties.judge import Graph, TooManyNodesError
 from pn2code.semantics.game.errors import GameError
@@ -36,7 +37,13 @@ def test_random_nets(tmp_path: Path) -> None:
         except (TooManyNodesError, GameError):
             continue
         options = ExploreOptions(traces=tmp_path, evidence=tmp_path)
-        found = look(opened, asked, nothing_seen(opened), Limits(memory=512), options)
+        found = look(
+            opened,
+            asked,
+            nothing_seen(opened),
+            Limits(memory=512, deadline=Deadline.after(600.0)),
+            options,
+        )
         told = found.unfolded
         assert told is not None and told.is_asked and told.whole is not None, seed
         seen["nets"] += 1

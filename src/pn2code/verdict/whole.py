@@ -228,8 +228,8 @@ def look(
     asks_control = bool(checks.controller or asked)
     is_cell = cell is not None and (asks_control or checks.channel_model)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
-    may_unfold = not is_cell and _may_unfold(opened, limits)
-    if may_unfold:
+    wants_unfolded = opened.config is None and limits.unfolds and limits.approximation is None
+    if wants_unfolded and _may_unfold(opened, limits):
         part = replace(limits, deadline=limits.deadline.share(unfolded.EXPLORING))
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
@@ -238,7 +238,7 @@ def look(
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
-    if may_unfold:
+    if wants_unfolded:
         found = unfolded.look(opened, asked, found, limits, own_options or options)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
@@ -262,11 +262,9 @@ def look(
 
 
 def _may_unfold(opened: OpenNet, limits: Limits) -> bool:
-    """Whether the unfolded net of a net may be asked where a limit ends its exploration."""
-    if opened.config is not None or limits.approximation is not None or not limits.unfolds:
-        return False
+    """Whether a part of a limit of time is kept for the unfolded net."""
     with suppress(TimeIsOverError), limits.deadline.enforced():
-        return limits.deadline.left is None or not unfolded.why_not(opened.flat)
+        return limits.deadline.left is not None and not unfolded.why_not(opened.flat)
     return False
 
 

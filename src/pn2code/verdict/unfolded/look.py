@@ -266,7 +266,7 @@ class _Asker:
         if self.made.has_dead and self.options.traces is not None:
             wanted[_DEAD_RUN] = "reach dead"
         self.options.stage("looking for runs in the unfolded net ...")
-        seconds = min(self._left(), _RUN_S)
+        seconds = min(self._left(), max(_RUN_S, self._left(_RUNS)))
         found = hunt(self.program, self.questions.tables, wanted, seconds=seconds)
         for number, (name, steps) in enumerate(sorted(found.items())):
             path = self._path(name, number)
