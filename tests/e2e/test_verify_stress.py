@@ -221,7 +221,7 @@ def test_two_at_once(net: Path, tmp_path: Path) -> None:
 
 def test_little_of_everything(net: Path, tmp_path: Path) -> None:
     """Of time, of memory: partial, and everything says so."""
-    for options, why in ((("--memory", "16", "--threads", "64"), "memory"),):
+    for options, why in ((("--memory", "16", "--threads", "64", "--no-unfold"), "memory"),):
         report = tmp_path / "r"
         done = pn2code("verify", net, "--json", *options, "--report", report, *ENDLESS[:2])
         said = json.loads(done.stdout)
@@ -266,7 +266,7 @@ def small_disk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 def test_a_full_disk(net: Path, small_disk: Path, tmp_path: Path) -> None:
     # Tables: what was seen until then.
-    spill = ("--spill", small_disk, "--no-graph")
+    spill = ("--spill", small_disk, "--no-graph", "--no-unfold")
     done = pn2code("verify", net, "--json", *ENDLESS, *spill)
     said = json.loads(done.stdout)
     assert (done.returncode, said["complete"], said["why"]) == (3, False, "memory")

@@ -2,9 +2,9 @@
  * explore_sketch.c - of all states that were seen those with the least hashes.
  *
  * Keys depend on the order in which a search has met the multi-sets of its places. So the hash is one of the contents:
- * the packed places as they are, and the canonical bytes of all others. Equal markings have equal hashes in all searches
- * by the same program. As the hashes are as good as random numbers, the least ones of a union of sets are a sample of
- * it, and it is known of each of them in which of the sets it is.
+ * the packed places as they are, and the canonical bytes of all others. Equal markings have equal hashes in all
+ * searches by the same program. As the hashes are as good as random numbers, the least ones of a union of sets are a
+ * sample of it, and it is known of each of them in which of the sets it is.
  */
 #include "../explore_run.h"
 #include "../state/explore_multiset.h"

@@ -40,7 +40,7 @@ bool ex_swarm_is_end(const ex_run_t *run)
     return run->swarm->depth >= run->options.max_depth;
 }
 
-/* --- ways without loops: a walk may come to a state more than once ------------------------------------------------- */
+/* --- ways without loops: a walk may come to a state more than once ------------------------------------------------ */
 
 typedef struct place {
     ex_key_t key;
@@ -91,7 +91,7 @@ int64_t ex_swarm_write(ex_run_t *run, const char *path, const char *why)
     return written;
 }
 
-/* --- what was found ------------------------------------------------------------------------------------------------ */
+/* --- what was found ----------------------------------------------------------------------------------------------- */
 
 void ex_swarm_dead(ex_worker_t *worker)
 {
