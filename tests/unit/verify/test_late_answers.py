@@ -21,8 +21,8 @@ def test_only_what_is_open_for_the_number_of_states_has_another_reason() -> None
 
 
 @pytest.mark.parametrize(
-    ("nodes", "most", "is_full"), [(20, None, False), (20, 21, False), (20, 20, True)]
+    ("nodes", "most", "expected"), [(20, None, False), (20, 21, False), (20, 20, True)]
 )
-def test_what_is_permitted_at_all_counts(nodes: int, most: int | None, is_full: bool) -> None:
+def test_what_is_permitted_at_all_counts(nodes: int, most: int | None, expected: bool) -> None:
     found = cast(Any, SimpleNamespace(nodes=nodes))
-    assert is_full(found, Limits(max_states=most)) is is_full
+    assert is_full(found, Limits(max_states=most)) is expected
