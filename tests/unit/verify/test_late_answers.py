@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from pn2code.verify.controller.cut_answers import too_late
+from pn2code.verify.controller.cut_answers import is_full, too_late
 from pn2code.verify.exploring.limits import Limits
 
 
