@@ -38,6 +38,7 @@ from pn2code.net.other_orders import asking
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
+from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.net import Unfolding
 from pn2code.unfold.unfold import check, unfold
 from pn2code.verdict.asked import Asked
@@ -130,7 +131,7 @@ def look(
             if why:
                 return _with(found, Unfolded(why=why), limits)
             with deadline.share(_UNFOLDING).enforced():
-                unfolding = _unfolded(opened.flat)
+                unfolding = unfolded(opened.flat)
             if isinstance(unfolding, str):
                 return _with(found, Unfolded(why=unfolding), limits)
             game = Game(opened.flat, opened.storage, files=Files(None))
@@ -176,15 +177,15 @@ def _until(interrupted: Callable[[], bool]) -> Deadline:
     return Deadline(_LOOK_S, _LOOK_S, lambda: 2 * _LOOK_S if interrupted() else 0.0)
 
 
-def _unfolded(net: FlatNet) -> Unfolding | str:
+def unfolded(net: FlatNet) -> Unfolding | str:
     """The net unfolded, or why it cannot be asked."""
     d = Diagnostics()
     unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
         return d.errors[0].message
-    if unfolding.faults:
-        return f"`{unfolding.faults[0].name}` may raise an exception"
-    return unfolding
+    # Also one that a search for bindings raises: whose tokens are not known, so that it is no `Fault`.
+    fault = next((x for x in d if x.code == UNFOLDING_FAULT), None)
+    return unfolding if fault is None else f"an exception may be raised: {fault.message}"
 
 
 @record
