@@ -1,11 +1,20 @@
-"""Nets of which the unfolded net must not be asked: it would be another one."""
+"""Where nothing is said of the unfolded net: it would be another one, or contradicts what was explored."""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from helpers import netbuilder
+from helpers.unfoldable_nets import nothing_seen
+from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.asked import gather
+from pn2code.verdict.opened import read
 from pn2code.verdict.unfolded.look import unfolded
+from pn2code.verify.answers.properties import answers, from_unfolded
+from pn2code.verify.exploring.unfolded import Told, Unfolded
 
 COUNTER = """
     net Counter
@@ -53,3 +62,18 @@ def test_negative_zeros() -> None:
     why = unfolded(netbuilder.flat(ZEROS.format(put="~ r")))
     assert isinstance(why, str) and "a negative zero may come into place `Top.P`" in why
     assert not isinstance(unfolded(netbuilder.flat(ZEROS.format(put="~ r + 0.0"))), str)
+
+
+def test_what_was_explored_must_agree(tmp_path: Path) -> None:
+    net = netbuilder.write(ZEROS.format(put="r"), tmp_path / "net.cpn")
+    opened = read(net, {}, Diagnostics())
+    assert opened is not None
+    properties = gather(opened, ["deadlock free"], None, Diagnostics(), found=False).plain
+    (name,) = (p.name for p in properties.properties)
+    told = Unfolded(told={name: Told(False, ("STATE_EQUATION",))})
+    found = replace(nothing_seen(opened), unfolded=told)
+    (open_,) = answers(properties, (), found)
+    assert from_unfolded(open_, found).answer == "no"
+    (explored,) = answers(properties, [{"answer": "yes"}], found)
+    with pytest.raises(RuntimeError, match="is another one"):
+        from_unfolded(explored, found)

@@ -98,6 +98,7 @@ def look(
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
+    why: str = "",
 ) -> Exploration:
     """The exploration, with what the unfolded net tells besides.
 
@@ -106,12 +107,15 @@ def look(
         asked: what is asked of it.
         found: what was explored, up to a limit.
         limits, options: of the exploration; runs go where they say.
+        why: why it cannot be asked, where that is known already.
 
     Raises:
         RuntimeError: the methods contradict each other, or the exploration.
     """
     if found.why not in REACHED or found.approximation is not None or found.covering is not None:
         return found
+    if why:
+        return _with(found, Unfolded(why=why), limits)
     began = time.monotonic()
     deadline = limits.deadline
     if deadline.is_over():
@@ -127,8 +131,7 @@ def look(
         deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
         with deadline.enforced():
-            why = why_not(opened.flat)
-            if why:
+            if why := why_not(opened.flat):
                 return _with(found, Unfolded(why=why), limits)
             with deadline.share(_UNFOLDING).enforced():
                 unfolding = unfolded(opened.flat)
