@@ -77,7 +77,7 @@ def unfold(
     except _NegativeZeroError as zero:
         d.error(
             UNSUPPORTED_UNFOLDING,
-            f"a negative zero may come into place `{zero.place.name}`, equal to 0.0, but inscriptions can tell them apart",
+            f"a negative zero may come into place `{zero.place.name}`, and inscriptions can tell it from 0.0",
             _origin(net, zero.place),
             hint="add 0.0 where it is computed: that makes it positive",
         )
