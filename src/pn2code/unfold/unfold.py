@@ -20,7 +20,7 @@ from pn2code.base.frozen import record
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
-from pn2code.ml.core.terms import PVar, Symbol
+from pn2code.ml.core.terms import Lit, PVar, Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.evaluation.matching import match
@@ -301,7 +301,19 @@ class _Closure:
         for demand in demands:
             token = demand.place, demand.value
             pre[token] = pre.get(token, 0) + demand.count
-        self.wait(_Element(t, binding, pre))
+        only_there = {token: 1 for token in self._bound_by(t, binding) if not pre.get(token)}
+        self.wait(_Element(t, binding, pre | only_there, dict(only_there)))
+
+    def _bound_by(self, t: FlatTransition, binding: Binding) -> Iterator[Token]:
+        """Tokens that give variables their values and may not be taken: of ``0`x`` there must be one all the same."""
+        found = {s.uid: value for s, value in binding.items()}
+        for s in t.plan:
+            if isinstance(s, BindTerm):
+                arc = t.arcs[s.arc]
+                assert arc.inscription is not None
+                term = arc.inscription.terms[s.term]
+                if not isinstance(term.coefficient, Lit) or term.coefficient.value == 0:
+                    yield arc.place, self.game.evaluator.evaluate(term.value, found)
 
     def wait(self, element: _Element) -> None:
         """Let an element be ready when all that it demands can be there."""
