@@ -232,7 +232,7 @@ def test_a_net_without_a_cell(tmp_path: Path) -> None:
 
 
 def test_a_net_in_a_folder_below_the_cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 3))
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, *_: Done(step, 3))
     cell = stock(tmp_path / "cell", "2\n")
     (cell / "nets").mkdir()
     (cell / "cell.cpn").rename(cell / "nets/cell.cpn")
@@ -250,7 +250,7 @@ def test_a_net_in_a_folder_below_the_cell(tmp_path: Path, monkeypatch: pytest.Mo
 def test_folders_that_are_no_reports_are_left_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 3))
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, *_: Done(step, 3))
     net = tmp_path / "n.cpn"
     net.write_bytes(cpn("net n\n  standard\n  page P\n    place A = 1\n"))
     out = tmp_path / "out"
@@ -288,7 +288,7 @@ def test_files_that_change_while_the_report_is_made(
     toml = (cell / "cell.toml").read_text().replace("[devices.robot1]", "[robots.robot1]")
     (cell / "cell.toml").write_text(toml + ARM)
 
-    def carried_out(step: Step, _: Path) -> Done:
+    def carried_out(step: Step, *_: object) -> Done:
         if step.verb == "generate" and way != "not at all":
             file = cell / name
             old = file.read_bytes() if file.is_file() else b""
@@ -317,7 +317,7 @@ def test_files_that_change_while_the_report_is_made(
 def test_layouts_that_were_not_asked_for_are_named(
     tmp_path: Path, root: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 0))
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, *_: Done(step, 0))
     done = pn2code(
         "report", root / "examples/riveting", "-o", tmp_path / "out", "--layout", "paper"
     )

@@ -126,9 +126,10 @@ def test_a_net_that_cannot_be_asked(tmp_path: Path) -> None:
             out P : n + 1 @+ 1
     """
     net = netbuilder.write(text, tmp_path / "timed.cpn")
-    code, printed = verify(net, "--max-states", 20, "-o", tmp_path, "--unbounded-ok")
-    assert code == 3
-    assert "Unfolded net         it cannot be asked instead: place `Top.P` is timed" in printed
+    for limit in ((), ("--max-seconds", 600)):  # of time, a part is kept only where it can be asked
+        code, printed = verify(net, "--max-states", 20, *limit, "-o", tmp_path, "--unbounded-ok")
+        assert code == 3
+        assert "Unfolded net         it cannot be asked instead: place `Top.P` is timed" in printed
 
 
 @pytest.mark.parametrize(

@@ -20,15 +20,15 @@ from pn2code.base.frozen import record
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
-from pn2code.ml.core.terms import PVar, Symbol
-from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
+from pn2code.ml.core.terms import Lit, PVar, Symbol
+from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.evaluation.matching import match
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.errors import GameError, NoMatchError
 from pn2code.semantics.game.marking import Binding, Marking
 from pn2code.semantics.game.token_game import Game
-from pn2code.semantics.values.data import Value
+from pn2code.semantics.values.data import Value, zero_signs
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.unfold.codes import UNFOLDING_FAULT, UNFOLDING_TOO_LARGE, UNSUPPORTED_UNFOLDING
 from pn2code.unfold.net import Fault, UnfoldedPlace, UnfoldedTransition, Unfolding
@@ -74,6 +74,14 @@ def unfold(
             hint="make the colour sets smaller, or the values in them finite",
         )
         return None
+    except _NegativeZeroError as zero:
+        d.error(
+            UNSUPPORTED_UNFOLDING,
+            f"a negative zero may come into place `{zero.place.name}`, and inscriptions can tell it from 0.0",
+            _origin(net, zero.place),
+            hint="add 0.0 where it is computed: that makes it positive",
+        )
+        return None
     for fault in closure.faults[:10]:
         d.warning(
             UNFOLDING_FAULT,
@@ -93,7 +101,7 @@ def check(net: FlatNet, d: Diagnostics, *, with_code: bool = False) -> None:
             d.error(
                 UNSUPPORTED_UNFOLDING,
                 said,
-                p.origins[0] if p.origins else Origin(net.file),
+                _origin(net, p),
                 hint=hint,
             )
     for t in net.transitions:
@@ -119,6 +127,16 @@ def _inscriptions(t: FlatTransition) -> Iterator[tuple[Any, Origin]]:
     for arc in t.arcs:
         if arc.inscription is not None:
             yield arc.inscription.value, arc.inscription.origin
+
+
+def _origin(net: FlatNet, p: FlatPlace) -> Origin:
+    return p.origins[0] if p.origins else Origin(net.file)
+
+
+class _NegativeZeroError(Exception):
+    def __init__(self, place: FlatPlace) -> None:
+        super().__init__(place.name)
+        self.place = place
 
 
 class _TooLargeError(Exception):
@@ -246,14 +264,14 @@ class _Closure:
     def add(self, token: Token) -> None:
         """A colour can come into a place."""
         place, value = token
+        if any(zero_signs(value)):
+            raise _NegativeZeroError(self.net.places[place])
         if value in self.known[place]:
             return
         self.count += 1
         if self.count > self.max_places:
-            p = self.net.places[place]
-            raise _TooLargeError(
-                "places", self.max_places, p.origins[0] if p.origins else Origin(self.net.file)
-            )
+            origin = _origin(self.net, self.net.places[place])
+            raise _TooLargeError("places", self.max_places, origin)
         self.known[place].add(value)
         self.new[place].append(value)
         for element in self.waiting.pop(token, ()):
@@ -283,7 +301,19 @@ class _Closure:
         for demand in demands:
             token = demand.place, demand.value
             pre[token] = pre.get(token, 0) + demand.count
-        self.wait(_Element(t, binding, pre))
+        only_there = {token: 1 for token in self._bound_by(t, binding) if not pre.get(token)}
+        self.wait(_Element(t, binding, pre | only_there, dict(only_there)))
+
+    def _bound_by(self, t: FlatTransition, binding: Binding) -> Iterator[Token]:
+        """Tokens that give variables their values and may not be taken: of ``0`x`` there must be one all the same."""
+        found = {s.uid: value for s, value in binding.items()}
+        for s in t.plan:
+            if isinstance(s, BindTerm):
+                arc = t.arcs[s.arc]
+                assert arc.inscription is not None
+                term = arc.inscription.terms[s.term]
+                if not isinstance(term.coefficient, Lit) or term.coefficient.value == 0:
+                    yield arc.place, self.game.evaluator.evaluate(term.value, found)
 
     def wait(self, element: _Element) -> None:
         """Let an element be ready when all that it demands can be there."""

@@ -228,8 +228,8 @@ def look(
     asks_control = bool(checks.controller or asked)
     is_cell = cell is not None and (asks_control or checks.channel_model)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
-    wants_unfolded = opened.config is None and limits.unfolds and limits.approximation is None
-    if wants_unfolded and _may_unfold(opened, limits):
+    why_not_unfolded = None if is_cell else _why_not_unfolded(opened, limits)
+    if why_not_unfolded == "":
         part = replace(limits, deadline=limits.deadline.share(unfolded.EXPLORING))
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
@@ -238,8 +238,9 @@ def look(
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
-    if wants_unfolded:
-        found = unfolded.look(opened, asked, found, limits, own_options or options)
+    if why_not_unfolded is not None:
+        own = own_options or options
+        found = unfolded.look(opened, asked, found, limits, own, why=why_not_unfolded)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
     control: Control | None = None
@@ -261,11 +262,18 @@ def look(
     return Looked(soon, control, more, seen)
 
 
-def _may_unfold(opened: OpenNet, limits: Limits) -> bool:
-    """Whether a part of a limit of time is kept for the unfolded net."""
+def _why_not_unfolded(opened: OpenNet, limits: Limits) -> str | None:
+    """Why the unfolded net of a net cannot be asked where a limit ends its exploration; None: it is not to be.
+
+    Where no time has to be kept for it this is not looked at before ("").
+    """
+    if opened.config is not None or limits.approximation is not None or not limits.unfolds:
+        return None
+    if limits.deadline.left is None:
+        return ""
     with suppress(TimeIsOverError), limits.deadline.enforced():
-        return limits.deadline.left is not None and not unfolded.why_not(opened.flat)
-    return False
+        return unfolded.why_not(opened.flat)
+    return None
 
 
 def _open_channels(cell: Partition, sizes: Sizes) -> frozenset[int]:

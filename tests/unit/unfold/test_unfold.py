@@ -136,6 +136,27 @@ def test_an_infinite_colour_set_with_finitely_many_colours() -> None:
     assert unfolded_size(u) == size(net) == (5, 4)
 
 
+@pytest.mark.parametrize("coefficient", ["0", "none", "(2 * none)"])
+def test_a_token_that_is_not_taken_must_be_there(coefficient: str) -> None:
+    net = flat(
+        f"""
+        net N
+          standard
+          val none = 0;
+          var n: INT;
+          page Top
+            place P : INT = 1`1 ++ 2`2
+            trans Look
+              in P : {coefficient}`n
+            trans Take
+              in P : n
+        """
+    )
+    u = unfold(net, Diagnostics())
+    assert u is not None
+    assert unfolded_size(u) == size(net)
+
+
 def test_a_counter_without_end_is_given_up() -> None:
     net = flat(
         """

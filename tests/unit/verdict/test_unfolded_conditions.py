@@ -105,6 +105,7 @@ def test_conditions_of_random_nets() -> None:
         ("List.exists (fn t => t > size (Mark.Top'Q 1)) (Mark.Top'P 1)", "tokens of several places"),
         ("List.exists (fn t => 1 div t > 0) (Mark.Top'P 1)", "cannot be computed"),
         ("size (Mark.Top'P 1) + 1073741823 > 0", "too large"),
+        ("size (Mark.Top'P 1) + 200000000 + 200000000 - 300000000 > 0", "too large"),
         ("size (Mark.Top'P 1) <= size (Mark.Top'Q 1) + 1", "numbers of tokens with others and a number"),
     ],
 )  # fmt: skip

@@ -243,12 +243,16 @@ class _Reader:
     # --- numbers
 
     def _number(self, e: core.Exp) -> Sum:
+        found = self._sum(e)
+        if abs(found.constant) > _LARGEST_CONSTANT:  # with some tokens more it may raise Overflow
+            raise NotTranslatedError("it compares with too large numbers")
+        return found
+
+    def _sum(self, e: core.Exp) -> Sum:
         match e:
             case _ if not self._looks(e):
                 value = self._value(e)
                 assert isinstance(value, int)
-                if abs(value) > _LARGEST_CONSTANT:  # with some tokens more it may raise Overflow
-                    raise NotTranslatedError("it compares with too large numbers")
                 return Sum({}, value)
             case core.Apply(core.Builtin("Ms.size" | "List.length"), of):
                 return self._counted(self._tokens(of))

@@ -38,6 +38,7 @@ from pn2code.net.other_orders import asking
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
+from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.net import Unfolding
 from pn2code.unfold.unfold import check, unfold
 from pn2code.verdict.asked import Asked
@@ -97,6 +98,7 @@ def look(
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
+    why: str = "",
 ) -> Exploration:
     """The exploration, with what the unfolded net tells besides.
 
@@ -105,12 +107,15 @@ def look(
         asked: what is asked of it.
         found: what was explored, up to a limit.
         limits, options: of the exploration; runs go where they say.
+        why: why it cannot be asked, where that is known already.
 
     Raises:
         RuntimeError: the methods contradict each other, or the exploration.
     """
     if found.why not in REACHED or found.approximation is not None or found.covering is not None:
         return found
+    if why:
+        return _with(found, Unfolded(why=why), limits)
     began = time.monotonic()
     deadline = limits.deadline
     if deadline.is_over():
@@ -126,11 +131,10 @@ def look(
         deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
         with deadline.enforced():
-            why = why_not(opened.flat)
-            if why:
+            if why := why_not(opened.flat):
                 return _with(found, Unfolded(why=why), limits)
             with deadline.share(_UNFOLDING).enforced():
-                unfolding = _unfolded(opened.flat)
+                unfolding = unfolded(opened.flat)
             if isinstance(unfolding, str):
                 return _with(found, Unfolded(why=unfolding), limits)
             game = Game(opened.flat, opened.storage, files=Files(None))
@@ -176,15 +180,15 @@ def _until(interrupted: Callable[[], bool]) -> Deadline:
     return Deadline(_LOOK_S, _LOOK_S, lambda: 2 * _LOOK_S if interrupted() else 0.0)
 
 
-def _unfolded(net: FlatNet) -> Unfolding | str:
+def unfolded(net: FlatNet) -> Unfolding | str:
     """The net unfolded, or why it cannot be asked."""
     d = Diagnostics()
     unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
         return d.errors[0].message
-    if unfolding.faults:
-        return f"`{unfolding.faults[0].name}` may raise an exception"
-    return unfolding
+    # Also one that a search for bindings raises: whose tokens are not known, so that it is no `Fault`.
+    fault = next((x for x in d if x.code == UNFOLDING_FAULT), None)
+    return unfolding if fault is None else f"an exception may be raised: {fault.message}"
 
 
 @record

@@ -170,11 +170,19 @@ def _answer(p: m.Property, said: Mapping[str, Any], *, is_part: bool) -> Answer:
 
 
 def from_unfolded(answer: Answer, found: Exploration) -> Answer:
-    """With what the unfolded net tells, where exploring has not decided."""
+    """With what the unfolded net tells, where exploring has not decided.
+
+    Raises:
+        RuntimeError: both have decided, and they contradict each other.
+    """
     u = found.unfolded
-    if answer.answer != "inconclusive" or u is None or not u.is_asked:
+    if u is None or not u.is_asked:
         return answer
     one = (u.told or {}).get(answer.about.name)
+    if answer.answer != "inconclusive":
+        if one is not None and one.holds != (answer.answer == "yes"):
+            raise RuntimeError(f"the unfolded net is another one: {answer.about.holds}")
+        return answer
     if one is None:
         why = clause(found.why)
         refused = (u.refused or {}).get(answer.about.name)
