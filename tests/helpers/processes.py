@@ -24,6 +24,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
+from pn2code.base.handed_on import VARIABLE
 from pn2code.cli import main
 from pn2code.cli.main import VERBS, play
 
@@ -206,8 +207,14 @@ def started(
     stdin: int,
     stdout: IO[bytes],
     stderr: IO[bytes],
+    env: Mapping[str, str],
+    pass_fds: Sequence[int],
 ) -> Child:
-    """`python -m pn2code ARGUMENTS` as a fork: what tests put in the place of a command's own `subprocess.Popen`."""
+    """`python -m pn2code ARGUMENTS` as a fork: what tests put in the place of a command's own `subprocess.Popen`.
+
+    A fork has all open files, and loads no module anew: it tells nobody how far it is.
+    """
+    assert VARIABLE in env and pass_fds
     python, flag, module, *arguments = command
     assert (python, flag, module, stdin) == (sys.executable, "-m", "pn2code", subprocess.DEVNULL)
 
