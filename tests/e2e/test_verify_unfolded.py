@@ -130,6 +130,11 @@ def test_a_net_that_cannot_be_asked(tmp_path: Path) -> None:
         code, printed = verify(net, "--max-states", 20, *limit, "-o", tmp_path, "--unbounded-ok")
         assert code == 3
         assert "Unfolded net         it cannot be asked instead: place `Top.P` is timed" in printed
+    code, printed = verify(net, "--unfold", "-o", tmp_path, "--property", "bound P <= 1")
+    assert code == 3
+    assert "PARTIAL: nothing was explored, and the unfolded net cannot be asked." in printed
+    assert "?  property 1: not known: nothing was explored, and the unfolded net" in printed
+    assert "limit" not in printed
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row("Reduced by", ", ".join(found.reductions))
     for name, what in unfolded_text.rows(net, found):
         yield from row(name, what)
-    if found.unfolded is not None and found.unfolded.is_asked:
+    if found.unfolded is not None and (found.unfolded.is_asked or found.unfolded.is_alone):
         if not found.knows_whole:
             yield from _growing(net, found)
         return

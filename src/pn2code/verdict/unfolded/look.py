@@ -169,10 +169,11 @@ def look(
 def _with(found: Exploration, made: Unfolded, limits: Limits) -> Exploration:
     is_alone = limits.max_states == ALONE
     made = replace(made, is_alone=is_alone)
-    if not is_alone or not made.is_asked:
+    if not is_alone:
         return replace(found, unfolded=made)
     # Nothing is to be said of the initial marking as if it were a state space.
-    return replace(found, why="unfolded", told=False, bounds=None, fired=(), unfolded=made)
+    why = "unfolded" if made.is_asked else "not unfolded"
+    return replace(found, why=why, told=False, bounds=None, fired=(), unfolded=made)
 
 
 def _until(interrupted: Callable[[], bool]) -> Deadline:

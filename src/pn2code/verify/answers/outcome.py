@@ -79,9 +79,9 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
     if found.known is not None:
         return _counted(found, found.known)
     rest = basis.partial(found)
+    if found.unfolded is not None and found.unfolded.is_alone:
+        return "" if found.knows_whole else f"{_why(found, counts)}."
     if found.unfolded is not None and found.unfolded.is_asked:
-        if found.unfolded.is_alone:
-            return "" if found.knows_whole else f"{_why(found, counts)}."
         rest = (
             "Nodes, and tables of bounds, dead markings and transitions, are those of the part that was seen; what the "
             "unfolded net tells is about all reachable markings."

@@ -176,8 +176,11 @@ def from_unfolded(answer: Answer, found: Exploration) -> Answer:
         RuntimeError: both have decided, and they contradict each other.
     """
     u = found.unfolded
-    if u is None or not u.is_asked:
+    if u is None:
         return answer
+    if not u.is_asked:
+        is_open = u.is_alone and answer.answer == "inconclusive"
+        return replace(answer, why=clause(found.why)) if is_open else answer
     one = (u.told or {}).get(answer.about.name)
     if answer.answer != "inconclusive":
         if one is not None and one.holds != (answer.answer == "yes"):

@@ -16,6 +16,7 @@ _CLAUSES = {
     "exception": "an inscription raised an exception",
     "decided": "all properties were decided before the end",
     "unfolded": "the unfolded net was asked alone, and has not told it in time",
+    "not unfolded": "nothing was explored, and the unfolded net cannot be asked",
     "counted": "not all markings of the closed net were counted",
     "truncated": "not all markings were seen",
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
