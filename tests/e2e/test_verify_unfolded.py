@@ -109,6 +109,13 @@ def test_without_properties_all_markings_are_enough(table: Path, tmp_path: Path)
     assert "Status: Partial" not in printed and "All markings:" in printed
 
 
+def test_one_marking_that_was_asked_for_is_explored(table: Path, tmp_path: Path) -> None:
+    code, printed = verify(table, "--max-states", 1, "--json", "-o", tmp_path)
+    said = json.loads(printed)
+    assert (code, said["why"], said["nodes"]) == (0, "states", 1)
+    assert said["dead_markings"] == 0 and said["bounds"][0]["upper"] == 9
+
+
 def test_never(table: Path, tmp_path: Path) -> None:
     code, printed = verify(table, "--max-states", 20, "--no-unfold", "--json", "-o", tmp_path)
     assert (code, json.loads(printed)["unfolded"]) == (3, None)

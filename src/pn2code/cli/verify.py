@@ -55,7 +55,6 @@ from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.asked import files as asked_files
 from pn2code.verdict.opened import OpenNet
-from pn2code.verdict.unfolded.look import ALONE
 from pn2code.verdict.whole import (
     MOST_COLOURS,
     Checks,
@@ -70,6 +69,7 @@ from pn2code.verify.codes import TIME_OVER
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import (
+    ALONE,
     COUNTS_FROM,
     TURNS_FROM,
     Approximation,
@@ -370,6 +370,7 @@ def verify(
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
         unfolds=unfold is not False,
+        unfolds_alone=bool(unfold),
     )
     is_cell = opened.config is not None and check_controller
     with (

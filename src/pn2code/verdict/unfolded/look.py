@@ -52,8 +52,6 @@ from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.unfolded import Told, Unfolded, Whole
 
-ALONE = 1
-"""Most states of an exploration instead of which the unfolded net is asked: no more than the initial marking."""
 EXPLORING = 2 / 3
 """Of a limit of time, what the exploration of single markings may take where the unfolded net can be asked, too."""
 _LEAST_S, _MOST_S = 10.0, 300.0
@@ -167,9 +165,8 @@ def look(
 
 
 def _with(found: Exploration, made: Unfolded, limits: Limits) -> Exploration:
-    is_alone = limits.max_states == ALONE
-    made = replace(made, is_alone=is_alone)
-    if not is_alone:
+    made = replace(made, is_alone=limits.unfolds_alone)
+    if not limits.unfolds_alone:
         return replace(found, unfolded=made)
     # Nothing is to be said of the initial marking as if it were a state space.
     why = "unfolded" if made.is_asked else "not unfolded"

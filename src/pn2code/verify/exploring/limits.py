@@ -17,6 +17,8 @@ TURNS_FROM = 1_000_000
 """States of a cell that are looked at before its programs are looked at in turns; fewer are all seen in seconds."""
 COUNTS_FROM = 200_000
 """The same before it is tried to count tokens up to a limit only (`counts`)."""
+ALONE = 1
+"""Markings that are explored where the unfolded net is asked instead: no more than the initial one."""
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
@@ -67,6 +69,7 @@ class Limits:
             None: never.
         most_in_turns: states that are looked at then; None: as many as `max_states` says.
         unfolds: whether the unfolded net is asked where a limit of states, time or memory ends an exploration.
+        unfolds_alone: whether it is asked instead of one: `max_states` is `ALONE` then.
         counts_from: states from which on tokens are counted up to a limit only, if that is enough; None: never, nor
             where it is more than `turns_from`.
     """
@@ -87,6 +90,7 @@ class Limits:
     most_in_turns: int | None = None
     counts_from: int | None = COUNTS_FROM
     unfolds: bool = False
+    unfolds_alone: bool = False
 
 
 def default_memory() -> int:
