@@ -12,72 +12,24 @@ import random
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 from helpers import netbuilder
-from helpers.unfoldable_nets import nothing_seen, properties_of, unfoldable_net
-from pn2code.base.deadline import Deadline
+from helpers.unfoldable_nets import properties_of, unfoldable_net
+from helpers.unfolded_compared import differences
 from pn2code.diagnostics import Diagnostics
-from pn2code.properties.judge import Graph, TooManyNodesError
+from pn2code.properties.judge import TooManyNodesError
 from pn2code.semantics.game.errors import GameError
-from pn2code.verdict.asked import Asked, gather
-from pn2code.verdict.opened import OpenNet, read
-from pn2code.verdict.unfolded.look import look, why_not
-from pn2code.verify.answers import confirm
-from pn2code.verify.answers.properties import answers, from_unfolded
-from pn2code.verify.exploring.explore import ExploreOptions
-from pn2code.verify.exploring.limits import Limits
+from pn2code.verdict.asked import gather
+from pn2code.verdict.opened import read
+from pn2code.verdict.unfolded.askable import why_not
 
 PROPERTIES = 6
 MOST_NODES = 1_500
 SECONDS = 10.0
 """For a net."""
-
-
-def compared(opened: OpenNet, asked: Asked, folder: Path, seen: Counter[str]) -> Iterator[str]:
-    """What differs for a net; `seen` counts what was compared."""
-    graph = Graph.of(opened.flat, {}, asked.plain, most=MOST_NODES)
-    limits = Limits(deadline=Deadline.after(SECONDS), memory=1024)
-    options = ExploreOptions(traces=folder, evidence=folder)
-    found = look(opened, asked, nothing_seen(opened), limits, options)
-    told = found.unfolded
-    assert told is not None
-    if not told.is_asked:
-        seen["not asked"] += 1
-        return
-    seen["nets"] += 1
-    seen["with code"] += any(t.code for t in opened.flat.transitions)
-    if told.whole is not None:
-        seen["sizes"] += 1
-        if told.whole.states != len(graph.markings):
-            yield f"{told.whole.states} markings, not {len(graph.markings)}"
-    if told.has_dead not in (None, bool(graph.dead)):
-        yield f"dead markings: {told.has_dead}"
-    occurring = {t for _, t, _ in graph.arcs}
-    for t in opened.flat.transitions:
-        if t.index not in told.open_:
-            seen["transitions"] += 1
-            if (t.index in told.never) == (t.index in occurring):
-                yield f"`{t.name}` occurs or not"
-    for place, most in (told.bounds or {}).items():
-        seen["bounds"] += 1
-        if most != max(len(marking.places[place]) for marking in graph.markings):
-            yield f"`{opened.flat.places[place].name}` holds at most {most}"
-    for before in answers(asked.plain, (), found):
-        answer = from_unfolded(before, found)
-        seen[f"{answer.about.kind}: {answer.answer}"] += 1
-        if answer.answer == "inconclusive":
-            continue
-        if answer.answer != ("yes" if graph.says(answer.about.asked) else "no"):
-            yield f"{answer.about.holds}: {answer.answer}, by {answer.methods}"
-        if answer.evidence is not None:
-            seen["runs"] += 1
-            problem = confirm.problem(opened.flat, {}, asked.plain, answer)
-            if problem:
-                yield f"{answer.about.holds}: {problem}"
 
 
 def main() -> int:
@@ -102,7 +54,9 @@ def main() -> int:
             texts = properties_of(r, opened.flat, PROPERTIES)
             asked = gather(opened, texts, None, Diagnostics(), found=False)
             try:
-                for what in compared(opened, asked, folder, seen):
+                for what in differences(
+                    opened, asked, folder, seen, most=MOST_NODES, seconds=SECONDS
+                ):
                     wrong += 1
                     print(f"{seed}: {what}", flush=True)
             except TooManyNodesError:

@@ -17,6 +17,7 @@ import pytest
 
 from helpers.netbuilder import flat, write
 from helpers.processes import DEADLINE_S, Command, pn2code
+from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
@@ -140,7 +141,7 @@ class Inline:
     def __init__(self, *, is_here: bool) -> None:
         self.is_here = is_here
 
-    def start(self, d: Diagnostics) -> bool:
+    def start(self, d: Diagnostics, deadline: Deadline) -> bool:
         return True
 
     def results(

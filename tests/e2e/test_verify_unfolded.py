@@ -149,6 +149,7 @@ def test_a_net_that_cannot_be_asked(tmp_path: Path) -> None:
     [
         (["--unfold", "--max-states", "10"], "it explores no marking"),
         (["--unfold", "--reduce", "symmetry"], "it explores no marking"),
+        (["--unfold", "--swarm", "2"], "it explores no marking"),
     ],
 )
 def test_what_does_not_go_together(options: list[str], says: str, table: Path) -> None:

@@ -53,6 +53,7 @@ def compose(
             permits, and more; else they look as if in the order of the files, and can do neither all of that nor more.
     """
     composer = Composer(partition, rules, crashes, loose=loose, hasty=hasty)
+    composer.build()
     if extra is not None:
         extra(composer)
     return composer.finish()
@@ -61,16 +62,9 @@ def compose(
 class Composer(Writing, Reading):
     """Makes the net, part by part; public are the helpers for `Extra`."""
 
-    def __init__(
-        self,
-        partition: Partition,
-        rules: Rules,
-        crashes: Crashes,
-        *,
-        loose: bool = False,
-        hasty: bool = False,
-    ) -> None:
-        super().__init__(partition, rules, crashes, loose=loose, hasty=hasty)
+    def build(self) -> None:
+        """All parts, in their order."""
+        crashes = self.crashes
         self._net_transitions()
         for o in range(len(self.sides)):
             self.publishing(o)
@@ -83,7 +77,7 @@ class Composer(Writing, Reading):
                 self._robot(o)
             for o in range(len(self.sides)):
                 self._crashing(o)  # last: all places of its memory are there now
-        self.ends = frozenset[str]() if loose else frozenset(self._rest())
+        self.ends = frozenset[str]() if self.is_loose else frozenset(self._rest())
 
     def _net_transitions(self) -> None:
         reads = {f.made: f.read for f in self.files}

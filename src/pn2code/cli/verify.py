@@ -315,7 +315,7 @@ def verify(
     properties it is 0 if all are true, 1 if one is false, and 3 if one is not known and none is false. With a
     cell.toml the checks of its supervisor count in the same way.
     """
-    if unfold and (reduce or approximate or max_states is not None):
+    if unfold and (reduce or approximate or max_states is not None or swarm is not None):
         raise typer.BadParameter(
             "it explores no marking, so that nothing limits, reduces or approximates how it explores them",
             param_hint="--unfold",

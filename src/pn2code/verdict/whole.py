@@ -22,7 +22,7 @@ from pn2code.semantics.game.errors import about_files
 from pn2code.verdict import channel_model, closed, controller, other_orders, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
-from pn2code.verdict.unfolded import look as unfolded
+from pn2code.verdict.unfolded import askable
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
@@ -33,7 +33,7 @@ from pn2code.verify.controller import long_timers, short_timers
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions
-from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.limits import REACHED, Limits
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration, OtherOrders
 from pn2code.verify.exploring.result_rows import row as exploration_row
@@ -228,9 +228,10 @@ def look(
     asks_control = bool(checks.controller or asked)
     is_cell = cell is not None and (asks_control or checks.channel_model)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
-    why_not_unfolded = None if is_cell else _why_not_unfolded(opened, limits)
-    if why_not_unfolded == "":
-        part = replace(limits, deadline=limits.deadline.share(unfolded.EXPLORING))
+    may_unfold = opened.config is None and limits.unfolds and limits.approximation is None
+    why_not = _why_not_unfolded(opened, limits) if may_unfold else None
+    if why_not == "":
+        part = replace(limits, deadline=limits.deadline.share(askable.EXPLORING))
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(cell, of_net.sizes))
@@ -238,9 +239,10 @@ def look(
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
         return None
-    if why_not_unfolded is not None:
-        own = own_options or options
-        found = unfolded.look(opened, asked, found, limits, own, why=why_not_unfolded)
+    if may_unfold and found.why in REACHED:
+        from pn2code.verdict.unfolded import look as unfolded  # its methods take time to load
+
+        found = unfolded.look(opened, asked, found, limits, own_options or options, why_not)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
     control: Control | None = None
@@ -263,16 +265,12 @@ def look(
 
 
 def _why_not_unfolded(opened: OpenNet, limits: Limits) -> str | None:
-    """Why the unfolded net of a net cannot be asked where a limit ends its exploration; None: it is not to be.
+    """Why the unfolded net cannot be asked where a limit of time ends the exploration, a part of which is kept for it.
 
-    Where no time has to be kept for it this is not looked at before ("").
+    "": it can; None: there is no such limit, or no time to find out.
     """
-    if opened.config is not None or limits.approximation is not None or not limits.unfolds:
-        return None
-    if limits.deadline.left is None:
-        return ""
     with suppress(TimeIsOverError), limits.deadline.enforced():
-        return unfolded.why_not(opened.flat)
+        return None if limits.deadline.left is None else askable.why_not(opened.flat)
     return None
 
 

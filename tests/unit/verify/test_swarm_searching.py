@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from helpers.netbuilder import flat
+from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
@@ -67,7 +68,7 @@ class Told:
         self.found, self.order = found, order
         self.ended: list[tuple[int, bool]] = []
 
-    def start(self, d: Diagnostics) -> bool:
+    def start(self, d: Diagnostics, deadline: Deadline) -> bool:
         return True
 
     def results(

@@ -158,9 +158,14 @@ class Conditions:
 
     def _same(self, unfolded: int, tokens: int) -> Formula:
         a = Sum({unfolded: 1})
-        return self._equal(a, Sum({}, tokens))
+        return self.equal(a, Sum({}, tokens))
 
-    def _equal(self, a: Sum, b: Sum) -> Formula:
+    def equal(self, a: Sum, b: Sum) -> Formula:
+        """Two sums are the same.
+
+        Raises:
+            NotTranslatedError: as `at_most`.
+        """
         d = _added(a, b, -1)
         return joined("and", [self.at_most(d, 0), self.at_most(_added(Sum({}), d, -1), 0)])
 
@@ -214,7 +219,7 @@ class _Reader:
             case "<>":
                 return _negated(self._compared("=", a, b))
             case "=" if _is_int(a):
-                return self.to._equal(self._number(a), self._number(b))
+                return self.to.equal(self._number(a), self._number(b))
             case "=" if _is_bool(a):
                 x, y = self.truth(a), self.truth(b)
                 both = joined("and", [x, y])

@@ -1,6 +1,6 @@
 """A run to a marking of which it is known that it is reachable: by walks and searches of the engine, as a trace.
 
-    found = hunt(program, questions.tables, {"p": "reach not sum 1 3 1 2"}, seconds=5.0)
+    found = hunt(program, unfolding, questions.tables, {"p": "reach not sum 1 3 1 2"}, seconds=5.0)
     found["p"]                        # indices of unfolded transitions, loops left out
 
 What is not found says nothing.
@@ -9,29 +9,31 @@ What is not found says nothing.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing
 from pathlib import Path
 
 from pn2code.contest.engine import Run, Task, ask
 from pn2code.contest.tables import Tables
-from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.marking import BindingElement
-from pn2code.semantics.game.token_game import Game
-from pn2code.trace.writing import TraceFile, TraceUnwritableError
+from pn2code.trace.played import written
 from pn2code.unfold.net import Unfolding
 
 _MEBIBYTES = 512
 
 
 def hunt(
-    program: Path, tables: Tables, wanted: Mapping[str, str], *, seconds: float
+    program: Path,
+    unfolding: Unfolding,
+    tables: Tables,
+    wanted: Mapping[str, str],
+    *,
+    seconds: float,
 ) -> dict[str, tuple[int, ...]]:
-    """Runs to what some questions look for, as far as walks find it.
+    """Runs to what some questions look for, as far as walks and searches find it.
 
     Args:
         program: the engine.
-        tables: the net.
+        unfolding: the net; `tables`: the same for the engine.
         wanted: questions ("reach ..") by name.
         seconds: for all of them.
     """
@@ -41,7 +43,7 @@ def hunt(
     found: dict[str, tuple[int, ...]] = {}
     for said in ask(program, tasks) if names and seconds > 0 else ():
         if isinstance(said, Run):
-            found[names[said.number]] = _without_loops(tables, said.steps)
+            found[names[said.number]] = _without_loops(unfolding, said.steps)
             if len(found) == len(names):
                 break
     return found
@@ -55,42 +57,29 @@ def write(
     Raises:
         RuntimeError: the token game does not play it: then the unfolded net is wrong.
     """
-    game = Game(unfolding.net, storage, files=Files(None))
+    chosen = (unfolding.transitions[step] for step in steps)
+    elements = [BindingElement(t.transition, t.binding) for t in chosen]
     try:
-        with closing(TraceFile(path)) as file:
-            file.header(game, "reference", 1)
-            for step in steps:
-                t = unfolding.transitions[step]
-                file.occurrence(game, game.fire(BindingElement(t.transition, t.binding)))
-            is_over = not game.enabled_transitions(game.marking)
-            file.end(game.marking.time, "finished" if is_over else "steps")
-    except TraceUnwritableError:
-        return False
+        return written(unfolding.net, storage, elements, path)
     except GameError as problem:
         raise RuntimeError(
             f"the unfolded net has a step that the net has not: {problem}"
         ) from problem
-    return True
 
 
-def _without_loops(tables: Tables, steps: Sequence[int]) -> tuple[int, ...]:
+def _without_loops(unfolding: Unfolding, steps: Sequence[int]) -> tuple[int, ...]:
     """The same way, without what leads back to a marking where it was before."""
-    marking = list(tables.initial)
-    seen = {tuple(marking): 0}
+    passed = [unfolding.initial]
+    seen = {unfolding.initial: 0}
     kept: list[int] = []
-    passed = [tuple(marking)]
-    for t in steps:
-        for p, n in tables.pre[t].items():
-            marking[p] -= n
-        for p, n in tables.post[t].items():
-            marking[p] += n
-        now = tuple(marking)
+    for step in steps:
+        now = unfolding.fire(passed[-1], unfolding.transitions[step])
         if now in seen:
             for later in passed[seen[now] + 1 :]:
                 del seen[later]
             del kept[seen[now] :], passed[seen[now] + 1 :]
         else:
-            kept.append(t)
+            kept.append(step)
             passed.append(now)
             seen[now] = len(kept)
     return tuple(kept)

@@ -8,9 +8,7 @@ saturation, structural reductions with the state equation, random walks, searche
 First the sizes of its state space, then whether a marking is dead and the properties, then what occurs, and how many
 tokens places hold. What the exploration has seen must agree with it.
 
-It is asked only where its answers are about the same state space: nothing is timed or drawn at random, nobody writes
-references or files (code segments neither), no inscription raises an exception whatever is asked first, and there are
-no priorities, inhibitor and reset arcs.
+It is asked only where its answers are about the same state space (`askable`), and no binding raises an exception.
 """
 
 from __future__ import annotations
@@ -32,28 +30,24 @@ from pn2code.contest.lines import Result
 from pn2code.contest.portfolio import answers
 from pn2code.contest.space import space
 from pn2code.diagnostics import Diagnostics
-from pn2code.net.flat import ArcKind, FlatNet
-from pn2code.net.magnitudes import Magnitudes
-from pn2code.net.other_orders import asking
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.errors import GameError
 from pn2code.semantics.game.token_game import Game
 from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.net import Unfolding
-from pn2code.unfold.unfold import check, unfold
+from pn2code.unfold.unfold import unfold
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.unfolded.askable import why_not
 from pn2code.verdict.unfolded.conditions import transition_name
 from pn2code.verdict.unfolded.hunt import hunt, write
 from pn2code.verdict.unfolded.questions import DEAD, Questions
-from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.unfolded import Told, Unfolded, Whole
 
-EXPLORING = 2 / 3
-"""Of a limit of time, what the exploration of single markings may take where the unfolded net can be asked, too."""
 _LEAST_S, _MOST_S = 10.0, 300.0
 """Where time is not limited: half of what the exploration took, within these bounds."""
 _UNFOLDING = 0.35
@@ -71,32 +65,13 @@ _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
 
 
-def why_not(net: FlatNet) -> str:
-    """Why the unfolded net of a net cannot be asked, as far as it is seen at once; "": it can."""
-    if any(a.kind in (ArcKind.INHIBITOR, ArcKind.RESET) for t in net.transitions for a in t.arcs):
-        return "it has inhibitor or reset arcs"
-    if len({t.priority for t in net.transitions}) > 1:
-        return "its transitions have priorities"
-    d = Diagnostics()
-    check(net, d, with_code=True)
-    if d.errors:
-        return d.errors[0].message
-    if nondeterminism.draws(net):
-        return "it depends on random numbers or files"
-    if nondeterminism.counts(net):
-        return "it asks for the number of steps"
-    if asking(net, Magnitudes(net)) is not None:
-        return "an inscription may raise an exception, perhaps in another order only"
-    return ""
-
-
 def look(
     opened: OpenNet,
     asked: Asked,
     found: Exploration,
     limits: Limits,
     options: ExploreOptions,
-    why: str = "",
+    why: str | None = None,
 ) -> Exploration:
     """The exploration, with what the unfolded net tells besides.
 
@@ -105,7 +80,7 @@ def look(
         asked: what is asked of it.
         found: what was explored, up to a limit.
         limits, options: of the exploration; runs go where they say.
-        why: why it cannot be asked, where that is known already.
+        why: why it cannot be asked; "": it can; None: that was not looked at yet.
 
     Raises:
         RuntimeError: the methods contradict each other, or the exploration.
@@ -117,7 +92,7 @@ def look(
     began = time.monotonic()
     deadline = limits.deadline
     if deadline.is_over():
-        return found
+        return _with(found, Unfolded(why="there was no time to ask it"), limits)
     options.stage("unfolding the net ...")
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     try:
@@ -129,7 +104,7 @@ def look(
         deadline = Deadline.after(min(max(_LEAST_S, found.seconds / 2), _MOST_S))
     try:
         with deadline.enforced():
-            if why := why_not(opened.flat):
+            if why is None and (why := why_not(opened.flat)):
                 return _with(found, Unfolded(why=why), limits)
             with deadline.share(_UNFOLDING).enforced():
                 unfolding = unfolded(opened.flat)
@@ -269,7 +244,7 @@ class _Asker:
             wanted[_DEAD_RUN] = "reach dead"
         self.options.stage("looking for runs in the unfolded net ...")
         seconds = min(self._left(), max(_RUN_S, self._left(_RUNS)))
-        found = hunt(self.program, self.questions.tables, wanted, seconds=seconds)
+        found = hunt(self.program, self.unfolding, self.questions.tables, wanted, seconds=seconds)
         for number, (name, steps) in enumerate(sorted(found.items())):
             path = self._path(name, number)
             if not write(self.unfolding, opened.storage, steps, path):

@@ -7,9 +7,9 @@ made.refused["p"]                            # why a property cannot be asked, a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import Formula, FormulaError, Op
 from pn2code.contest.tables import Tables
@@ -52,43 +52,29 @@ class Questions:
         Raises:
             ValueError: the net has something that is not in the tables.
         """
-        plain = Tables.of(unfolding)
         conditions = Conditions(game, unfolding, properties.predicates)
-        translated: dict[str, tuple[str, Formula]] = {}
+        translated: list[tuple[m.Property, str, Formula]] = []
         refused: dict[str, str] = {}
         for p in properties.properties:
             try:
-                translated[p.name] = _translated(conditions, p.asked)
+                translated.append((p, *_translated(conditions, p.asked)))
             except NotTranslatedError as problem:
                 refused[p.name] = str(problem)
-        net = unfolding.net
-        of: dict[int, list[int]] = {t.index: [] for t in net.transitions}
-        for t in unfolding.transitions:
-            of[t.transition].append(t.index)
-        named = {name(u): (u,) for u in sorted(conditions.used)}
-        places = {f"p{i}": own for i, own in enumerate(unfolding.of_place)}
-        tables = Tables(
-            plain.initial,
-            plain.pre,
-            plain.post,
-            {**named, **places},
-            {transition_name(i): tuple(own) for i, own in of.items()},
-        )
+        tables = _named(unfolding, conditions.used)
         questions: list[Asked] = []
         shown: dict[str, str] = {}
-        for which, (kind, formula) in translated.items():
-            asked = next(p.asked for p in properties.properties if p.name == which)
+        for p, kind, formula in translated:
             try:
-                if kind == "reach":
-                    is_dead = asked == m.Invariant(m.negation(m.DEAD))
-                    text = "reach dead" if is_dead else f"reach {tables.formula(formula)}"
-                    is_turned = not isinstance(asked, m.Invariant) or asked.wanted
-                    questions.append(Asked(which, (Part("reach", text),), is_turned=is_turned))
-                    shown[which] = text
-                else:
-                    questions.append(Asked(which, formula=formula, kind=kind))
+                if kind != "reach":
+                    questions.append(Asked(p.name, formula=formula, kind=kind))
+                    continue
+                is_dead = p.asked == m.Invariant(m.negation(m.DEAD))
+                text = "reach dead" if is_dead else f"reach {tables.formula(formula)}"
+                is_turned = not isinstance(p.asked, m.Invariant) or p.asked.wanted
+                questions.append(Asked(p.name, (Part("reach", text),), is_turned=is_turned))
+                shown[p.name] = text
             except FormulaError as problem:
-                refused[which] = str(problem)
+                refused[p.name] = str(problem)
         return Questions(tables, tuple(questions), shown, refused)
 
     def dead(self) -> Asked:
@@ -114,6 +100,19 @@ class Questions:
                 text = f"bound {self.tables.sum(dict.fromkeys(own, 1), 0)}"
                 found.append(Asked(f"p{i}", (Part("bound", text),)))
         return found
+
+
+def _named(unfolding: Unfolding, used: Collection[int]) -> Tables:
+    """The tables with our names: those of the file may stand for several instances of a page."""
+    of: dict[int, list[int]] = {t.index: [] for t in unfolding.net.transitions}
+    for t in unfolding.transitions:
+        of[t.transition].append(t.index)
+    single = {name(u): (u,) for u in sorted(used)}
+    return replace(
+        Tables.of(unfolding),
+        places={**single, **{f"p{i}": own for i, own in enumerate(unfolding.of_place)}},
+        transitions={transition_name(i): tuple(own) for i, own in of.items()},
+    )
 
 
 def _translated(conditions: Conditions, asked: m.Asked) -> tuple[str, Formula]:

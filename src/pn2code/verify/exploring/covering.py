@@ -31,7 +31,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import closing, suppress
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -46,7 +46,7 @@ from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit, Timed
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
-from pn2code.trace.writing import TraceFile, TraceUnwritableError
+from pn2code.trace.played import written
 from pn2code.unfold.purity import impure
 from pn2code.verify.exploring.time_reduction import why_not_reducible
 
@@ -290,18 +290,7 @@ def write(
         GameError: an inscription raises an exception.
         NotEnabled: a step is not enabled: then it is no covering run.
     """
-    game = Game(net, storage, files=Files(None))
-    try:
-        with closing(TraceFile(path)) as file:
-            file.header(game, "reference", 1)
-            for element in (*run.prefix, *(run.round * rounds)):
-                game.marking = game.advance_time(game.marking)
-                file.occurrence(game, game.fire(element))
-            is_over = not game.enabled_transitions(game.advance_time(game.marking))
-            file.end(game.marking.time, "finished" if is_over else "steps")
-    except TraceUnwritableError:
-        return False
-    return True
+    return written(net, storage, (*run.prefix, *(run.round * rounds)), path)
 
 
 def kept(run: Covering, net: FlatNet, storage: Mapping[str, str], path: Path) -> Covering:

@@ -17,9 +17,10 @@ import queue
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
+from pn2code.base.closing import Closing
+from pn2code.base.deadline import NEVER, Deadline
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verify.codes import SWARM_UNAVAILABLE
 from pn2code.verify.swarm import task
@@ -28,7 +29,7 @@ from pn2code.verify.swarm.task import Job
 INSTALL = "pip install 'pn2code[swarm]'"
 _LOOK_S = 0.05
 """So often it is looked whether the time is over while all workers are busy."""
-_CONNECT_S = 30
+_CONNECT_S = 30.0
 
 
 def dask_setup(_: object) -> None:
@@ -36,7 +37,7 @@ def dask_setup(_: object) -> None:
     os.setsid()
 
 
-class Cluster:
+class Cluster(Closing):
     """A pool of workers, as long as the block lasts.
 
     Args:
@@ -52,15 +53,8 @@ class Cluster:
         self._job = ""
         self._futures: list[Any] = []
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """Ends the workers that are here."""
         self._stack.close()
         self._client = None
 
@@ -76,8 +70,8 @@ class Cluster:
             return self._workers
         return len(self._client.nthreads())
 
-    def start(self, d: Diagnostics) -> bool:
-        """Makes them ready, if they are not; False after an error."""
+    def start(self, d: Diagnostics, deadline: Deadline = NEVER) -> bool:
+        """Makes them ready, if they are not, and waits no longer for a scheduler; False after an error."""
         if self._client is not None:
             return True
         if importlib.util.find_spec("distributed") is None:
@@ -92,7 +86,7 @@ class Cluster:
         try:
             address = self._scheduler or self._local(distributed)
             self._client = self._stack.enter_context(
-                distributed.Client(address, timeout=_CONNECT_S)
+                distributed.Client(address, timeout=_patience(deadline))
             )
             if not self.is_here and not self.workers:
                 raise OSError("it has no workers")
@@ -178,6 +172,12 @@ class Cluster:
         if not gently:
             client.cancel(self._futures[first:])
         client.run(task.end_soon, self._job, first, gently, on_error="ignore", wait=False)
+
+
+def _patience(deadline: Deadline) -> float:
+    """Seconds that a scheduler has to answer."""
+    left = deadline.left
+    return _CONNECT_S if left is None else min(_CONNECT_S, max(left, _LOOK_S))
 
 
 def _same(job: Job) -> Job:

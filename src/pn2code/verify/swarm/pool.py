@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, Protocol
 
+from pn2code.base.deadline import Deadline
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.swarm.task import Job
@@ -21,8 +22,8 @@ class Pool(Protocol):
     def workers(self) -> int:
         """How many there are now."""
 
-    def start(self, d: Diagnostics) -> bool:
-        """Makes them ready, if they are not; False after an error."""
+    def start(self, d: Diagnostics, deadline: Deadline) -> bool:
+        """Makes them ready, if they are not, and waits no longer for a scheduler; False after an error."""
 
     def results(
         self, job: Job, searches: Sequence[tuple[str, ...]]

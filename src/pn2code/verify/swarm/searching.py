@@ -108,7 +108,7 @@ def search(
         d: gets the errors.
     """
     began = time.perf_counter()
-    if not swarm.pool.start(d):
+    if not swarm.pool.start(d, limits.deadline):
         return None
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
         job = Job(
