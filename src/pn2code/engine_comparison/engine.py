@@ -15,7 +15,8 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | `open` in an initial marking, a delay or a code segment: `let open List in hd l end` | `Uncaught Exception: Compile`, the page cannot be checked | accepts it, with a warning (`declaration-in-inscription`) |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
-| a variable twice in one pattern: `(x, x)` | takes a wrong binding, then `Internal Error: rm ...` | requires both parts to be equal |
+| a variable twice in one pattern: `(x, x)`, `[x, x]`, `x :: x :: l` | may take a token whose parts differ; then `Subtract`, or `Internal Error: rm ...` | requires both parts to be equal, with a warning (`pattern-repeats`) |
+| a variable twice in a pattern of a guard equation: `[p = (x, x)]` | does not compare the two, so that the transition occurs where it should not | requires both parts to be equal, with a warning (`pattern-repeats`) |
 | a guard equation with a variable twice on one side, of which no side is a pattern with variables: `[x * x = 4]`, `[#1 p + #2 p = 3]` | `InternalError: fun get_vids`, the page cannot be checked | tests it, with a warning (`guard-equation-repeats`) |
 | a guard equation that gives a variable a value outside its colour set: `[s = n + 5]`, `s` of `int with 0..3` | binds it without a look; stops if it comes into a place that cannot hold it | there is no such binding; `verify` says *not known* |
 | `Bind` raised by a guard (`let val (x :: _) = [] in x end`) before any token is tried or an equation has bound: `[f s > 0]` with all values of `s` | stops with `Bind`; elsewhere there is no binding | there is no binding; `verify` says *not known* |
@@ -24,7 +25,7 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | a guard that computes a list of conditions: `List.map f l`, `if c then [a] else []` | accepts it, and does not test it | tests it, with a warning (`guard-computed-list`) |
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it generated | `unbound-variable` |
 | an operator at the top of an inscription of several arcs from one place (`h :: t` and `l`), or with a coefficient on an arc from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it generated | takes what is written, with a warning (`engine-code`) |
-| an expression without variables in the key of a tuple: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it generated | computes it; `unbound-variable` if a variable has no value |
+| a computed component of a tuple or record of which another one is known before a token is looked for: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it generated | computes it, with a warning (`engine-code`); `unbound-variable` if a variable has no value |
 | a guard equation for a variable that has its value already (`[j = j + 1]`; `[even j, i = j, j = 1]`), in a transition whose arcs fall into groups without a common variable | accepts it, compares a variable of another group, and cannot compile the code that it generated | tests it |
 | an integer literal of more than 31 bits | accepts it, then cannot compile the code that it generated | `literal-too-large` |
 | a port that has a socket at one substitution transition of the page and none at another | uses the wrong socket, or `Exception Subscript` | a separate place, with a warning |
