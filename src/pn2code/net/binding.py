@@ -240,9 +240,10 @@ class Planner:
             terms = arcs[i].inscription.terms
             value = next(t.value for t in terms if engine_patterns.is_odd(t.value, self.terms))
             text = " ".join(engine_patterns.odd_part(value, self.terms).span.text.split())
+            cannot = "cannot" if answer.is_odd else "may be unable to"
             self.d.warning(
                 ENGINE_CODE,
-                f"CPN Tools accepts transition `{parts.name}`, but cannot compile the code that it makes of it: it "
+                f"CPN Tools accepts transition `{parts.name}`, but {cannot} compile the code that it makes of it: it "
                 f"looks for a token of which a part is known, and `{text}` is no pattern",
                 arcs[i].inscription.origin,
                 notes=[Note(HERE, parts.origin)],

@@ -53,7 +53,8 @@ class Answer:
             break, or a variable that is twice in a coefficient or a condition is not known.
         names: of the last but two: variables that get no value.
         parted: an arc at which the tables break or from which on they are wrong, and an earlier one from its place.
-        odd: arcs that it writes as patterns, and that are none.
+        odd: arcs that it may write as patterns, and that are none.
+        is_odd: whether it does so with one, whatever it chooses.
         repeated: variables that are twice in a pattern, and that it may not compare.
     """
 
@@ -61,6 +62,7 @@ class Answer:
     names: frozenset[Symbol] = frozenset()
     parted: tuple[int, int] | None = None
     odd: frozenset[int] = frozenset()
+    is_odd: bool = False
     repeated: frozenset[Symbol] = frozenset()
 
 
@@ -108,4 +110,5 @@ def examine(
     wrong = [faults(tables, group, is_small) for group in tables.groups]
     odd = frozenset(i for x in wrong for i in x.arcs)
     repeated = frozenset(s for x in wrong for s in x.repeated)
-    return Answer("", parted=parted, odd=odd, repeated=repeated)
+    is_odd = any(x.is_certain for x in wrong)
+    return Answer("", parted=parted, odd=odd, is_odd=is_odd, repeated=repeated)

@@ -29,11 +29,13 @@ class Faults:
     """What may go wrong in a transition.
 
     Args:
-        arcs: the numbers of those that are written as patterns, and are none.
+        arcs: the numbers of those that may be written as patterns, and are none.
+        is_certain: whether one of them is, whichever order is taken.
         repeated: variables that are twice in a pattern and may be not compared.
     """
 
     arcs: frozenset[int] = frozenset()
+    is_certain: bool = False
     repeated: frozenset[Symbol] = frozenset()
 
 
@@ -52,17 +54,35 @@ def faults(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> Fa
     steps: list[Step | Lookup] = [*made.all(is_small)]
     steps += made.lookups
     start = ((1 << (len(found.arcs) + len(found.conditions))) - 1) << found.count
-    taken = _cheapest(steps, start, (1 << found.count) - 1)
+    end = (1 << found.count) - 1
+    taken = _cheapest(steps, start, end)
     if taken is None:
-        return Faults(odd, frozenset(tables.twice[n] for n in stands))
+        return Faults(odd, False, frozenset(tables.twice[n] for n in stands))
     arcs: set[int] = set()
     repeated: set[int] = set()
+    fine: list[tuple[int, Step | Lookup]] = []
     for marking, step in taken:
-        if isinstance(step, Lookup):
-            arcs |= set() if step.leaf.is_pattern else {step.leaf.arc}
-        elif step.stands and step.gives & ~step.needs & ~marking == 0:
+        if isinstance(step, Lookup) and not step.leaf.is_pattern:
+            arcs.add(step.leaf.arc)
+            continue
+        fine.append((marking, step))
+        if isinstance(step, Step) and step.stands and not step.gives & ~step.needs & ~marking:
             repeated |= step.stands & stands
-    return Faults(frozenset(arcs), frozenset(tables.twice[n] for n in repeated))
+    is_certain = bool(arcs) and not _leads(fine, start, end)
+    return Faults(frozenset(arcs), is_certain, frozenset(tables.twice[n] for n in repeated))
+
+
+def _leads(steps: list[tuple[int, Step | Lookup]], start: int, end: int) -> bool:
+    """Whether some of the steps lead from one marking to the other."""
+    after: dict[int, list[int | None]] = {}
+    for marking, step in steps:
+        after.setdefault(marking, []).append(step.after(marking))
+    seen, open_ = {start}, [start]
+    while open_:
+        new = [m for m in after.get(open_.pop(), ()) if m is not None and m not in seen]
+        seen.update(new)
+        open_ += new
+    return end in seen
 
 
 def _compared(group: Group) -> Iterator[int]:

@@ -159,6 +159,16 @@ def test_a_component_is_computed_and_not_searched_for(
     assert codes(colset, pattern, guard, more) == []
 
 
+def test_of_several_orders_it_is_not_known_which_is_taken() -> None:
+    """One that costs as much looks for no token by a part: the engine took that one."""
+    text = NET.format(colset="P", pattern="(j, i)", guard="true")
+    text += "      in A : 2`(f i, j) ++ 1`(k, 1)\n      in A : (k, i)\n"
+    (found,) = (x for x in diagnose(text).items if x.code == "engine-code")
+    assert "may be unable to compile" in found.message
+    (found,) = diagnose(NET.format(colset="P", pattern="(j + 1, k)", guard="true") + JK).items
+    assert "cannot compile" in found.message
+
+
 def test_computed_parts_of_a_single_arc_bind_nothing() -> None:
     """Nothing is known before: the engine finds no order, although all values could be tried."""
     assert codes("S2", "(z + 1, w)") == ["binding-circle"]
