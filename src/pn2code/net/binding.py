@@ -187,7 +187,7 @@ class Planner:
             return True
         reader = PartReader(self.variables, self.terms)
         self.warn_of_fields(parts, arcs, reader)
-        if not parts.written and self.is_evident(arcs):
+        if not parts.written and self.is_evident(arcs, reader):
             self.warn_of_code(parts, arcs)
             return True
         answer = examine(arcs, parts.guards[: parts.written], reader, self.is_small)
@@ -218,7 +218,7 @@ class Planner:
             )
         if answer.kind in ("", "undecided"):
             self.warn_of_code(parts, arcs)
-            self.warn_of_patterns(parts, arcs, answer)
+            self.warn_of_patterns(parts, arcs, answer, reader)
         return True
 
     def warn_of_code(self, parts: Parts, arcs: Sequence[TakingArc]) -> None:
@@ -234,12 +234,12 @@ class Planner:
                 hint="put a variable there, and give it this value in the guard: `v = ...`",
             )
 
-    def warn_of_patterns(self, parts: Parts, arcs: Sequence[TakingArc], answer: Answer) -> None:
+    def warn_of_patterns(
+        self, parts: Parts, arcs: Sequence[TakingArc], answer: Answer, reader: PartReader
+    ) -> None:
         """Of patterns that CPN Tools binds wrongly, and of what it takes for one."""
         for i in sorted(answer.odd):
-            terms = arcs[i].inscription.terms
-            value = next(t.value for t in terms if engine_patterns.is_odd(t.value, self.terms))
-            text = " ".join(engine_patterns.odd_part(value, self.terms).span.text.split())
+            text = " ".join(engine_patterns.odd_part(arcs[i], reader).span.text.split())
             cannot = "cannot" if answer.is_odd else "may be unable to"
             self.d.warning(
                 ENGINE_CODE,
@@ -287,7 +287,7 @@ class Planner:
                 hint=f"write them in its order: {{{declared}}}",
             )
 
-    def is_evident(self, arcs: Sequence[TakingArc]) -> bool:
+    def is_evident(self, arcs: Sequence[TakingArc], reader: PartReader) -> bool:
         """Whether an order is found whatever the variables are: without a guard, by an arc with one summand."""
         terms = [t for arc in arcs for t in arc.inscription.terms]
         return (
@@ -296,7 +296,7 @@ class Planner:
             and not any(
                 self.variables.seen(t.coefficient)
                 or self.variables.seen(t.delay)
-                or engine_patterns.is_odd(t.value, self.terms)
+                or engine_patterns.is_odd(t.value, reader)
                 or any(engine_patterns.twice(t.pattern))
                 for t in terms
             )

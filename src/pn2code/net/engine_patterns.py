@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from pn2code.diagnostics import Span
-from pn2code.ml.core.terms import Apply, Builtin, Exp, Pat, PVar, RecordExp, Symbol
+from pn2code.ml.core.terms import Apply, Builtin, Exp, Pat, PVar, RecordExp, Symbol, Var
 from pn2code.net.engine_binding import TakingArc
-from pn2code.net.engine_parts import inside
+from pn2code.net.engine_parts import PartReader, inside
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import walk_pattern
 
@@ -38,13 +38,21 @@ def twice(pattern: Pat | None) -> Iterator[tuple[Symbol, Span]]:
     yield from dict(reversed(again)).items()
 
 
-def is_odd(e: Exp, terms: TermReader) -> bool:
+def is_odd(e: Exp, reader: PartReader) -> bool:
     """Whether it is a tuple or record that is no pattern."""
-    return isinstance(inside(e), RecordExp) and terms.pattern(e) is None
+    return isinstance(inside(e), RecordExp) and not reader.is_pattern(e)
 
 
-def odd_part(e: Exp, terms: TermReader) -> Exp:
-    """The component of such a tuple or record that keeps it from being one; else the whole."""
-    value = inside(e)
-    parts = [part for _, part in value.fields] if isinstance(value, RecordExp) else []
-    return next((part for part in parts if terms.pattern(part) is None), e)
+def odd_part(arc: TakingArc, reader: PartReader) -> Exp:
+    """The component that keeps a tuple or record on the arc from being a pattern; else the tuple, or all.
+
+    A constant that is there once more is one: in the code it is a variable, which a pattern cannot have twice.
+    """
+    values = (inside(term.value) for term in arc.inscription.terms)
+    value = next((v for v in values if is_odd(v, reader)), arc.inscription.value)
+    met: set[str] = set()
+    for _, part in value.fields if isinstance(value, RecordExp) else ():
+        if not reader.is_pattern(part) or (isinstance(part, Var) and part.span.text in met):
+            return part
+        met.add(part.span.text)
+    return value

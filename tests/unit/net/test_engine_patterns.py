@@ -130,6 +130,9 @@ def test_a_variable_is_twice_and_compared(colset: str, pattern: str, guard: str,
         ("PL", "(j, [j + 0])", "", J),
         ("TP", "(j + 1, k)", "", JK),
         ("S2", "(z, z + 1)", "", ""),
+        ("T3", "(one, i, one)", "", ""),  # a constant is a variable in its pattern, and there twice
+        ("T3", "1`(one, one, 2) ++ 1`(one, i, one)", "", ""),
+        ("PP", "((one, i), one)", "", ""),
     ],
 )
 def test_a_component_is_computed(colset: str, pattern: str, guard: str, more: str) -> None:
