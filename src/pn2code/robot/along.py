@@ -121,7 +121,7 @@ class AlongTrajectory:
         self.delta[k.joints] = 0.0
         self.duration = path.duration
         self.line = path.line
-        self.grid = self.whole(path.grid, path.way(path.times))
+        self.grid = self.whole(path.grid, path.fractions)
 
     def whole(self, joints: Array, s: Array) -> Array:
         """Joint positions with these of the arm, (n, joints), at fractions of the way."""
