@@ -149,6 +149,15 @@ class AlongTrajectory:
         out[self.joints] = self.led.qd(t)
         return np.asarray(out)
 
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return self.led.fraction(t)
+
+    @property
+    def length(self) -> float:
+        """m: of the way of the TCP, on the plate if it is led there."""
+        return self.way.inner.length
+
     @property
     def uneven(self) -> float:
         """As of its law."""

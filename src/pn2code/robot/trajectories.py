@@ -49,6 +49,13 @@ class Trajectory(Protocol):
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way (n,) from 0 to 1, in order: (n, 6). No time is in it."""
 
+    def fraction(self, t: float) -> float:
+        """At which fraction of the way it is at a time."""
+
+    @property
+    def length(self) -> float:
+        """m: of the way on which the TCP is led; 0: it is not led."""
+
 
 @frozen(eq=False)
 class Still:
@@ -72,6 +79,15 @@ class Still:
     def on_way(self, s: Array) -> Array:
         """The position, repeated."""
         return self.sample(s)
+
+    def fraction(self, t: float) -> float:
+        """There is no way."""
+        return 1.0
+
+    @property
+    def length(self) -> float:
+        """There is none."""
+        return 0.0
 
 
 class JointTrajectory:
@@ -103,6 +119,15 @@ class JointTrajectory:
     def progress(self, t: float) -> tuple[float, float]:
         """Fraction of the way at a time, and its speed, 1/s."""
         return (1.0, 0.0) if self._law is None else self._law.at(t)
+
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return self.progress(t)[0]
+
+    @property
+    def length(self) -> float:
+        """The axes are led, not the TCP."""
+        return 0.0
 
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
@@ -227,6 +252,15 @@ class LinearTrajectory:
     def progress(self, t: float) -> tuple[float, float]:
         """Fraction of the way at a time, and its speed, 1/s."""
         return self._law.at(t)
+
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return float(self.way(np.array([t]))[0])
+
+    @property
+    def length(self) -> float:
+        """m: of the way of the TCP."""
+        return self.line.length
 
     @property
     def uneven(self) -> float:
