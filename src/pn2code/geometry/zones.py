@@ -19,7 +19,7 @@ from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.situations import ON_PLATE, Side, Situation, Situations
 from pn2code.geometry.where import at_rest, stands_at
-from pn2code.geometry.words import reason
+from pn2code.geometry.words import listed, reason
 from pn2code.robot.part import Part
 
 Explore = Callable[[Partition], CellGraph | None]
@@ -112,7 +112,7 @@ class Zones:
         """Who takes the token, and who gives it back."""
         net = self._found.graph.partition.net
         takes, gives = (
-            " and ".join(f"`{net.transitions[h.transition].name}`" for h in hands)
+            listed(f"`{net.transitions[h.transition].name}`" for h in hands)
             for hands in (guard.takes, guard.gives)
         )
         return f"taken by {takes} and given back by {gives}" if gives else f"taken by {takes}"
