@@ -99,7 +99,9 @@ def test_a_part_in_another_tool_is_not_taken_from_there(cell: RobotCell) -> None
     parts = Parts(cell)
     parts.handle("feeder", FEED, None)
     parts.handle("robot", TAKE, matrix_of(ABOVE))
-    with pytest.raises(PartFault, match=r"that stands \(`box.1` is in the tool of `robot`, and must"):
+    with pytest.raises(
+        PartFault, match=r"that stands \(`box.1` is in the tool of `robot`, and must"
+    ):
         parts.handle("other", TAKE, matrix_of(ABOVE))
 
 
