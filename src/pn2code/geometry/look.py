@@ -30,7 +30,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
-from pn2code.geometry.zones import Explore, Zones, sides_of
+from pn2code.geometry.zones import Explore, Refused, Zones, sides_of
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
@@ -55,6 +55,7 @@ class Options:
         explore: explores a changed cell; None: no proposals.
         stage: hears in words what is done; say: and how far it is.
         jobs: processes that sweep.
+        refused: what `generate` would say of a changed cell.
     """
 
     folder: Path
@@ -64,6 +65,7 @@ class Options:
     stage: Callable[[str], None] = lambda _text: None
     jobs: int = 1
     say: Say = silent
+    refused: Refused = lambda _changed: ""
 
 
 class Look:
@@ -97,7 +99,9 @@ class Look:
         zones = None
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
-            zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
+            zones = Zones(found, self.comparison, explore, self.options.refused).proposals(
+                seen.arms, touching
+            )
         return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
 
     def so_far(self) -> Layout:
