@@ -34,8 +34,9 @@ from pn2code.geometry.zones import Explore, Refused, Zones, sides_of
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
+from pn2code.robot.led_contacts import EARLY
 from pn2code.robot.motion_checks import other_branches
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
 from pn2code.robot.transforms import pose_of
 
 _NOWHERE = Clearance("robots", "", "", "", 0.0, None, (0.0, 0.0, 0.0))
@@ -550,7 +551,8 @@ def certain(apart: Apart) -> float | None:
 def _most_in(apart: Apart) -> float:
     """The least distance (m) that the links which touch can have anywhere on the way."""
     assert apart.where is not None
-    permitted = apart.nearest - apart.where.distance
+    # Nearer to where the move leads they may touch, and may be deeper by so much than here.
+    permitted = PART_CONTACT if apart.where.is_early else apart.nearest - apart.where.distance
     return min(apart.least - permitted, apart.where.distance)
 
 
@@ -563,6 +565,8 @@ def touch_in_words(apart: Apart) -> str:
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
     least = "" if apart.is_whole else "at least "
     text = f"{shown(gap.a)} and {shown(gap.b)} overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    if gap.is_early:
+        text += EARLY
     if not apart.is_whole:
         return f"{text}; where it is deepest was not searched for"
     if certain(apart) is None:

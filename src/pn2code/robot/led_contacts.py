@@ -58,6 +58,10 @@ class LedContact:
         return bool(self.part) and ends is not None and self.other in ends.turning
 
 
+EARLY = ", further from where the move leads than `contact_way` of the part"
+"""Of two that may touch, but not here."""
+
+
 class Led(Enum):
     """What a move has to do with a contact that is permitted only if it leads there, or comes from there."""
 

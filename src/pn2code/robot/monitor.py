@@ -23,7 +23,7 @@ from pn2code.robot.backend import Backend, Clearance, closest
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
 from pn2code.robot.kinematics import Conditioning
-from pn2code.robot.led_contacts import Led, LedContact, LedContacts, with_move
+from pn2code.robot.led_contacts import EARLY, Led, LedContact, LedContacts, with_move
 from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, pose_of
@@ -289,10 +289,7 @@ class Monitor:
         depth = 1000.0 * -gap.distance
         where = ", ".join(f"{1000 * v:.0f}" for v in gap.point)
         if gap.is_early and gap.distance < 0.0:
-            what = (
-                f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm), further from where the move "
-                "leads than `contact_way` of the part"
-            )
+            what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm){EARLY}"
         elif gap.allowed is None and gap.distance <= 0.0:
             what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm)"
         elif gap.allowed is not None and -gap.distance > gap.allowed:

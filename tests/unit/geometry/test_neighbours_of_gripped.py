@@ -89,7 +89,7 @@ def test_a_part_is_touched_only_near_where_it_is_gripped(
     lines = Lines(cell_of(way=way))
     request.addfinalizer(lines.backend.close)
     leg = lines.leg(first, command)
-    seen = lines.seen(leg, *np.linspace(0.0, 1.0, 61).tolist(), DEEPEST)
+    seen = lines.seen(leg, *np.linspace(0.0, 1.0, 15).tolist(), DEEPEST)
     said = {v.fault.message for v in seen if v.fault is not None}
     assert ("touch" if said else "clear") == stopped == lines.proved(leg, FAR)
     assert all(
