@@ -8,6 +8,7 @@ only one arm is let in at a time is left to chance.
 
 from __future__ import annotations
 
+import math
 from random import Random
 
 from helpers import meeting_cell
@@ -17,6 +18,8 @@ Place = tuple[float, float]
 SIZES = ((0.2, 0.2, 0.15), (0.5, 0.2, 0.15), (0.25, 0.25, 0.3))
 APART = 3000.0
 """mm between the bases."""
+LONGEST = 600.0
+"""mm: boxes that are no nearer than this at the start do not touch."""
 DECLARED = """\
   fun grip () = ();
   fun release () = ();
@@ -34,6 +37,8 @@ def carrying_pair(random: Random) -> tuple[str, str]:
     size = random.choice(SIZES)
     top = 1000.0 * size[2]
     places = {side: [_place(random, side), _place(random, side)] for side in (1, 2)}
+    while math.dist(places[1][0], places[2][0]) < LONGEST:
+        places[2][0] = _place(random, 2)
     if random.random() < 0.4:
         x, y = places[1][1]
         places[2][1] = (x + random.choice([220.0, 260.0, 530.0]), y)
