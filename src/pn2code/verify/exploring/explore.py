@@ -227,7 +227,9 @@ def _explored(
         with deadline.enforced():
             if nondeterminism.refuse(net, d):
                 return None
-            chosen = possible(net, limits.reductions, d, options.predicates)
+            chosen = possible(
+                net, limits.reductions, d, options.predicates, storage, options.questions
+            )
             made = options.generated or Generated()
             sizes = made.sizes or options.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
@@ -264,7 +266,7 @@ def _explored(
                 if not options.interrupted() and first is not None:
                     # The compiler was not done in time: what the program before has seen is what is known.
                     seen = {**first, "why": "seconds"}
-                    return Exploration.of(net, seen, compiling)
+                    return chosen.told(Exploration.of(net, seen, compiling))
                 if not options.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
@@ -316,18 +318,18 @@ def _explored(
             _differs(net, error, d)
             return None
         if error and error["kind"] == "heap":
-            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
+            heaped = {**found, "error": None, "why": HEAPED}
+            return chosen.told(Exploration.of(net, heaped, compiling))
         if not error or error["kind"] not in ("capacity", "memory"):
-            return replace(
-                Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
-            )
+            return chosen.told(Exploration.of(net, found, compiling))
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         if (
             place is not None
             and place.index in options.heaps
             and sizes.held(place.name) >= MOST_HEAPED
         ):
-            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
+            heaped = {**found, "error": None, "why": HEAPED}
+            return chosen.told(Exploration.of(net, heaped, compiling))
         larger = sizes.larger(place.name if place else None)
         if larger is None:
             what = f"place `{place.name}`" if place else "one marking's lists and strings"
@@ -337,7 +339,7 @@ def _explored(
                 place.origins[0] if place else Origin(net.file),
                 hint="run the net with `pn2code simulate`, limit the place in the net, or limit the exploration",
             )
-            return Exploration.of(net, {**found, "why": "memory"}, compiling)
+            return chosen.told(Exploration.of(net, {**found, "why": "memory"}, compiling))
         sizes = larger
         first = {**found, "error": None}
 
