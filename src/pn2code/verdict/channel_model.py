@@ -21,6 +21,7 @@ from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import COUNTED, Exploration
+from pn2code.verify.report import swarm_text
 
 Answers = tuple[Answer, ...]
 
@@ -48,7 +49,11 @@ def look(
     assert opened.config is not None, "it has been divided"
     if found.why in ("interrupted", "error") or options.interrupted():
         return ()
-    is_small = found.complete or found.why in ("decided", "approximation", COUNTED)
+    is_small = (
+        limits.swarm is not None
+        or found.complete
+        or found.why in ("decided", "approximation", COUNTED)
+    )
     is_open = not is_small and limits.deadline.is_over()
     own = Diagnostics()
     answers = tuple(
@@ -150,6 +155,8 @@ def _rests(a: Answer) -> Iterator[str]:
 
 
 def _counts(a: Answer) -> str:
+    if a.swarm is not None:
+        return f"{swarm_text.seen(a.swarm)}, {a.seconds:.1f} s"
     space = " of the reduced space" * a.reduced
     return (
         f"{a.nodes:,} markings, {a.arcs:,} arcs{space} of a net with {a.places} places and "

@@ -50,6 +50,7 @@ from pn2code.verify.controller.control_in_turns import (
 )
 from pn2code.verify.controller.control_messages import formats, memory
 from pn2code.verify.controller.control_questions import asked_of_orders, of_cell, of_orders
+from pn2code.verify.controller.control_swarm import swarmed
 from pn2code.verify.controller.control_types import (
     BLOCKING,
     MOST_WRITTEN,
@@ -114,6 +115,8 @@ def examine(
         why = f"the cell as it runs cannot be modelled: {problem}"
         nothing = not_looked(why, partition, plan.capacities, closed, poses, plan.bounds)
         return replace(nothing, why=why)
+    if limits.swarm is not None:
+        return swarmed(partition, running, plan, limits, d, closed)
     limits = replace(
         limits,
         approximation=None,
