@@ -40,7 +40,7 @@ from pn2code.unfold.unfold import unfold
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.unfolded.askable import why_not
-from pn2code.verdict.unfolded.conditions import transition_name
+from pn2code.verdict.unfolded.conditions import Counted, transition_name
 from pn2code.verdict.unfolded.hunt import hunt, write
 from pn2code.verdict.unfolded.questions import DEAD, Questions
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -134,6 +134,8 @@ def look(
             asker.ask_all()
             asker.find_runs(opened)
     made = replace(asker.made, seconds=time.monotonic() - began)
+    proven = (options.sizes.bounds if options.sizes is not None else None) or {}
+    made = without_overflows(opened.flat, made, questions.counted, proven)
     if wrong := contradiction(found, made):
         raise RuntimeError(f"the unfolded net is another one: {wrong}")
     return _with(found, made, limits)
@@ -158,10 +160,13 @@ def unfolded(net: FlatNet) -> Unfolding | str:
     d = Diagnostics()
     unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
-        return d.errors[0].message
+        error = d.errors[0]
+        return f"{error.message}; {error.hint}" if error.hint else error.message
     # Also one that a search for bindings raises: whose tokens are not known, so that it is no `Fault`.
     fault = next((x for x in d if x.code == UNFOLDING_FAULT), None)
-    return unfolding if fault is None else f"an exception may be raised: {fault.message}"
+    if fault is None:
+        return unfolding
+    return f"an exception may be raised: {fault.message}; guard what raises it, or handle the exception"
 
 
 @record
@@ -264,6 +269,31 @@ class _Asker:
             return o.traces / f"{o.stem}.dead.trace.jsonl"
         assert o.evidence is not None
         return o.evidence / f".pn2code-{os.getpid()}-u{number}.trace.jsonl"
+
+
+def without_overflows(
+    net: FlatNet, made: Unfolded, counted: Mapping[str, Counted], proven: Mapping[int, int]
+) -> Unfolded:
+    """The same, without answers that no run shows about numbers of tokens that may be too large for `int`.
+
+    Args:
+        net: the net.
+        made: what is known.
+        counted: by name of a property, what its conditions compute from numbers of tokens.
+        proven: by place, most tokens, where the structure of the net proves it.
+    """
+    most = 2 ** (net.program.int_bits - 1) - 1
+    bounds = {**proven, **(made.bounds or {})}
+    told, refused = dict(made.told or {}), dict(made.refused or {})
+    for name, own in counted.items():
+        place = own.may_exceed(most, bounds)
+        if place is not None and name in told and told[name].run is None:
+            del told[name]
+            refused[name] = (
+                f"its condition counts the tokens of place `{net.places[place].name}`, and whether they are too many "
+                "for `int` (`Overflow`) is not known; `bound` asks how many tokens a place holds without that"
+            )
+    return replace(made, told=told, refused=refused)
 
 
 def contradiction(found: Exploration, made: Unfolded) -> str:
