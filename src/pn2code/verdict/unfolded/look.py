@@ -25,6 +25,7 @@ from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import record
 from pn2code.contest.building import wait_until_built
 from pn2code.contest.engine import engine
+from pn2code.contest.evidence import evidence, rests_on
 from pn2code.contest.examinations import Asked as Question
 from pn2code.contest.lines import Result
 from pn2code.contest.portfolio import answers
@@ -61,6 +62,7 @@ _RUNS = 0.3
 _LEAST_MIB = 256
 _LOOK_S = 0.1
 _RUN_S = 10.0
+_CERTIFICATES_S = 5.0
 _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
 
@@ -133,6 +135,7 @@ def look(
         with suppress(TimeIsOverError), _until(options.interrupted).enforced():
             asker.ask_all()
             asker.find_runs(opened)
+            asker.find_certificates()
     made = replace(asker.made, seconds=time.monotonic() - began)
     proven = (options.sizes.bounds if options.sizes is not None else None) or {}
     made = without_overflows(opened.flat, made, questions.counted, proven)
@@ -260,6 +263,31 @@ class _Asker:
             else:
                 told[name] = replace(told[name], run=run)
         self.made = replace(self.made, told=told)
+
+    def find_certificates(self) -> None:
+        """Evidence for what is not reachable, of the unfolded net as it is."""
+        self.options.stage("looking for certificates in the unfolded net ...")
+        until = time.monotonic() + min(_CERTIFICATES_S, self._left())
+        q, told = self.questions, dict(self.made.told or {})
+        turned = {one.name: one.is_turned for one in q.properties}
+        for name, text in q.shown.items():
+            if name not in told or told[name].holds != turned[name]:
+                continue
+            found = evidence(text, q.tables, self._name, until)
+            is_late = found is None and time.monotonic() > until
+            rests = "" if found is not None else rests_on(told[name].methods, is_late=is_late)
+            told[name] = replace(told[name], certificate=found, rests=rests)
+        self.made = replace(self.made, told=told)
+        if self.made.has_dead is False:
+            found = evidence("reach dead", q.tables, self._name, until)
+            self.made = replace(self.made, dead_certificate=found)
+
+    def _name(self, number: int) -> str:
+        """Of an unfolded place, or of the number of steps of a transition, which comes after these."""
+        places = self.unfolding.places
+        if number < len(places):
+            return places[number].name
+        return f"steps of {self.unfolding.transitions[number - len(places)].name}"
 
     def _path(self, name: str, number: int) -> Path:
         """Where a run goes: those of properties get their names later."""
