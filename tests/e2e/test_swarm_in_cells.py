@@ -31,19 +31,26 @@ pytestmark = pytest.mark.cc
 SEARCHES = 2
 
 
-def opened(folder: Path) -> OpenNet:
+def opened(folder: Path, *, goes_on: bool = False) -> OpenNet:
     d = Diagnostics()
-    found = read(overtaking_cell.write(folder), {}, d)
+    found = read(overtaking_cell.write(folder, goes_on=goes_on), {}, d)
     assert found is not None, render.report(d)
     return found
 
 
-def searched(folder: Path, *texts: str, checks: Checks, swarm: bool = True) -> Said:
+def searched(
+    folder: Path,
+    *texts: str,
+    checks: Checks,
+    swarm: bool = True,
+    goes_on: bool = False,
+    most: int = 400,
+) -> Said:
     """What is said of the cell; the runs are in `folder`."""
     d = Diagnostics()
-    cell = opened(folder)
+    cell = opened(folder, goes_on=goes_on)
     asked = question(cell, texts, None, d, found=True)
-    limits = Limits(max_states=400)
+    limits = Limits(max_states=most)
     if swarm:
         pool = Swarm(SEARCHES, Inline(is_here=True))
         limits = replace(limits, swarm=pool, approximation=Approximation.BITSTATE, memory=32)
@@ -97,6 +104,21 @@ def test_a_dead_end_of_the_cell(tmp_path: Path) -> None:
     assert whole.control is not None
     known = {c.name: c.answer for c in whole.control.checks}
     assert all(c.answer in ("unknown", known[name]) for name, c in checks.items())
+
+
+def test_no_end_although_the_cell_goes_on(tmp_path: Path) -> None:
+    """A walk looks at all that follows where it stands; the run leads to the first marking without an end."""
+    checks = Checks(channel_model=False)
+    said = searched(tmp_path, checks=checks, goes_on=True, most=20_000)
+    assert said.control is not None
+    ends = next(c for c in said.control.checks if c.name == BLOCKING)
+    assert (ends.answer, ends.why) == ("no", "endless")
+    (run,) = ends.evidence
+    assert run.transitions[-1] == "Top.B.Report", "when the supervisor sees that, it is too late"
+    # Walks are too short for that where they look at few markings.
+    few = searched(tmp_path, checks=checks, goes_on=True, most=400)
+    assert few.control is not None
+    assert next(c for c in few.control.checks if c.name == BLOCKING).answer == "unknown"
 
 
 def test_the_channel_model(tmp_path: Path) -> None:

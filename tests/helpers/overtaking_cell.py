@@ -66,6 +66,17 @@ page {name}
     out Waiting : ()
     out done : ()
 """
+GOES_ON = """\
+  trans Again
+    in Late : ()
+    out fb : ()
+    out Waiting : ()
+  trans Back
+    in Waiting : ()
+    in db : ()
+    out Late : ()
+"""
+"""The supervisor has something to do for ever, and does not come to its end either."""
 TOML = """\
 [net]
 file = "cell.cpnt"
@@ -83,8 +94,8 @@ NEVER = "never { size (Mark.Sup'Late 1) > 0 }"
 """True of the net, and false of the cell."""
 
 
-def write(folder: Path) -> Path:
-    """The cell as files."""
+def write(folder: Path, *, goes_on: bool = False) -> Path:
+    """The cell as files; `goes_on`: where it cannot come to its end it does something for ever."""
     devices = (
         DEVICE.format(name="Quick", priority="\n    priority P_HIGH"),
         DEVICE.format(name="Slow", priority=""),
@@ -94,6 +105,8 @@ def write(folder: Path) -> Path:
         for place in ("fa", "fb", "da", "db")
     )
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "cell.cpnt").write_text("".join((NET, *devices)), encoding="utf-8")
+    net = NET.replace("  place Late\n", "  place Late\n  place Waiting\n") if goes_on else NET
+    more = GOES_ON if goes_on else ""
+    (folder / "cell.cpnt").write_text("".join((net, more, *devices)), encoding="utf-8")
     (folder / "cell.toml").write_text("".join((TOML, *channels)), encoding="utf-8")
     return folder

@@ -29,7 +29,8 @@ def of_cell(
         plan: what is asked.
         in_turns: in a space that is seen in turns (`by_turns`).
         conditions: what is asked there of states instead of the properties.
-        by_markings: there will be no graph: of the end it is asked whether a dead marking is one.
+        by_markings: there will be no graph: of the end it is asked whether a dead marking is one, and then, in the last
+            line, whether it can still be reached.
     """
     asked = Questions()
     resting = None if in_turns else running.resting
@@ -48,6 +49,7 @@ def of_cell(
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
+        *([_ends(asked, over)] if by_markings else ()),
     ]
     lines = running.lines(first=True, at_once=in_turns)
     return "".join(f"{line}\n" for line in lines) + asked.text()

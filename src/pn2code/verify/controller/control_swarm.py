@@ -4,9 +4,10 @@
 
 Searches look at single markings, so they find what one marking shows: a dead one that is no end, a script that stops, a
 channel with two messages, a place beyond its capacity, an exception, a property that a marking violates. Each has its
-run, and the token game plays it as the programs choose (`played`). That nothing was found is no answer: what is *yes*
-here follows from the structure of the net. What needs the graph (the orders of firings, an end that can no longer be
-reached although the cell goes on) or values of tokens (messages, poses, room for lists) is not asked.
+run, and the token game plays it as the programs choose (`played`). Walks also look at all that follows a marking, where
+that is little: if no end is in it, the cell is blocked although it goes on. That nothing was found is no answer: what is *yes*
+here follows from the structure of the net. What needs the graph (the orders of firings) or values of tokens (messages,
+poses, room for lists) is not asked.
 """
 
 from __future__ import annotations
@@ -110,7 +111,8 @@ def swarmed(
             for row, holds in zip(padded, goals, strict=True)
         ]
         answers, rows = tuple(said[:count]), said[count:]
-        rows[_ENDS] = _dead_end(rows[_ENDS], found)
+        trap = rows.pop()
+        rows[_ENDS] = _blocked(rows[_ENDS], trap, found)
         keep = Keeper(plan, running)
         if running.unsure is not None:
             rows = rows[:-1]
@@ -160,8 +162,9 @@ def _check_endings(running: Running, plan: Plan) -> Iterator[int]:
     """The rows of checks of which one that fails is enough."""
     if plan.checks:
         first = OTHERS + len(running.silences)
-        count = len(running.partition.channels) + len(plan.capacities)
-        yield from (_ENDS, _STOPS, *range(first, first + count))
+        last = first + len(running.partition.channels) + len(plan.capacities)
+        trap = last + (running.unsure is not None)
+        yield from (_ENDS, _STOPS, *range(first, last), trap)
 
 
 # --- what a run has to come to -------------------------------------------------------------------
@@ -190,6 +193,7 @@ def _of_checks(running: Running, plan: Plan) -> Iterator[_Holds | None]:
     yield from (beyond(place, most) for place, most in plan.capacities.items())
     if running.unsure is not None:
         yield beyond(running.unsure, 0)
+    yield lambda played: not played.may_reach(running.over)
 
 
 def _looked_at(
@@ -230,8 +234,12 @@ def _looked_at(
     return _OPEN
 
 
-def _dead_end(row: Mapping[str, Any], found: Exploration) -> Mapping[str, Any]:
-    """As the graph would have said it."""
-    if row["answer"] != "no":
-        return {**row, "why": row.get("why") or "swarm"}
-    return {**row, "why": "deadlock", "value": found.nodes}
+def _blocked(
+    dead: Mapping[str, Any], trap: Mapping[str, Any], found: Exploration
+) -> Mapping[str, Any]:
+    """Of both answers about the end one, as the graph would have given it."""
+    if dead["answer"] == "no":
+        return {**dead, "why": "deadlock", "value": found.nodes}
+    if trap["answer"] == "no":
+        return {**trap, "why": "endless", "value": found.nodes}
+    return {**dead, "why": dead.get("why") or "swarm"}

@@ -9,7 +9,7 @@ has its tokens, since programs see the clock at different moments.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -22,6 +22,8 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.trace.script import Trace
 from pn2code.verify.controller.running import Running
 
+MOST_FOLLOWING = 300
+"""Markings that are looked at after a run that shows that none of some kind follows."""
 MOST_STEPS = 3_000
 """Longer runs take the token game too long."""
 
@@ -99,6 +101,33 @@ class Played:
             for t in self._running.net.transitions
             if t.index not in never
         )
+
+    def may_reach(self, place: int) -> bool:
+        """Whether a marking with a token in a place follows, as far as `MOST_FOLLOWING` markings tell."""
+        here = self.game.marking
+        seen, todo = {here}, [here]
+        try:
+            while todo and len(seen) <= MOST_FOLLOWING:
+                marking = todo.pop()
+                if len(marking.places[place]) > 0:
+                    return True
+                for after in self._after(marking):
+                    if after not in seen:
+                        seen.add(after)
+                        todo.append(after)
+            return False
+        finally:
+            self.game.marking = here
+
+    def _after(self, marking: Marking) -> Iterator[Marking]:
+        """What programs make of a marking; nothing with time."""
+        for t in () if self._running.net.timed else self._running.net.transitions:
+            self.game.marking = marking
+            for binding in tuple(self.game.bindings(t, marking)):
+                if self.why_not(t, binding) is None:
+                    self.game.fire(BindingElement.make(t, binding), checked=False)
+                    yield self.game.marking
+                    self.game.marking = marking
 
 
 def why_not(
