@@ -130,6 +130,14 @@ def test_the_channel_model(tmp_path: Path) -> None:
     assert all(a.answer == "yes" and a.swarm is None for a in exchanges)
 
 
+def test_what_is_known_of_the_end_is_said_of_the_files_too(tmp_path: Path) -> None:
+    """The searches of the cell with its files see too little for that; those of its programs know."""
+    said = searched(tmp_path, checks=Checks(), goes_on=True, most=5_000)
+    cell = said.channel_model[0]
+    assert cell.swarm is not None and not cell.evidence
+    assert cell.answer == "no" and cell.why.startswith(f"`{BLOCKING}`: ")
+
+
 def test_the_judge_of_runs_knows_what_programs_do(tmp_path: Path) -> None:
     """All markings that it permits are those that the explorer finds, and as many of them are dead."""
     said = searched(tmp_path, checks=Checks(channel_model=False), swarm=False)

@@ -91,13 +91,15 @@ _NOT_LOOKED = "whether programs stop or come too late is for the checks of the s
 def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
     """That the cell can come to its end is also for the checks of the supervisor: they know when programs stop."""
     a = replace(a, assumes=f"{a.assumes}; {premise}" if premise else a.assumes)
-    if a.answer != "yes":
+    if a.answer == "no" or (a.answer != "yes" and a.swarm is None):
         return a
     if control is None:
-        return replace(a, answer="inconclusive", why=_NOT_LOOKED)
+        return a if a.swarm is not None else replace(a, answer="inconclusive", why=_NOT_LOOKED)
     ends = next(c for c in control.checks if c.name == BLOCKING)
     if ends.answer == "no":
         return replace(a, answer="no", why=f"`{BLOCKING}`: {ends.says}")
+    if a.answer != "yes":
+        return a
     if control.stops or (ends.answer == "unknown" and ends.why != "speeds"):
         return replace(a, answer="inconclusive", why=control.stops or clause(ends.why or ""))
     return a

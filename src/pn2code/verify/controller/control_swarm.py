@@ -5,9 +5,9 @@
 Searches look at single markings, so they find what one marking shows: a dead one that is no end, a script that stops, a
 channel with two messages, a place beyond its capacity, an exception, a property that a marking violates. Each has its
 run, and the token game plays it as the programs choose (`played`). Walks also look at all that follows a marking, where
-that is little: if no end is in it, the cell is blocked although it goes on. That nothing was found is no answer: what is *yes*
-here follows from the structure of the net. What needs the graph (the orders of firings) or values of tokens (messages,
-poses, room for lists) is not asked.
+that is little: if no end is in it, the cell is blocked although it goes on. That nothing was found is no answer: what
+is *yes* here follows from the structure of the net. What needs the graph (the orders of firings) or values of tokens
+(messages, poses, room for lists) is not asked.
 """
 
 from __future__ import annotations
