@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tools.swarm_cells import differences
 
 from helpers import overtaking_cell
 from helpers.swarms import Inline
@@ -29,6 +31,8 @@ from pn2code.verify.swarm.pool import Swarm
 pytestmark = pytest.mark.cc
 
 SEARCHES = 2
+SEED = 5
+"""Of a random cell in which something is wrong."""
 
 
 def opened(folder: Path, *, goes_on: bool = False) -> OpenNet:
@@ -171,3 +175,10 @@ def test_a_run_that_programs_do_not_have(tmp_path: Path) -> None:
     assert answer.evidence is not None
     problem = why_not(said.control.running, {}, answer.evidence.trace)
     assert problem is not None and "is not enabled" in problem
+
+
+def test_a_random_cell(tmp_path: Path) -> None:
+    """What is found there is what all states say. `python -m tools.swarm_cells` has others."""
+    seen: Counter[str] = Counter()
+    assert not [*differences(SEED, tmp_path, seen)]
+    assert seen["cells"] == 1 and seen["no"] > 0, seen
