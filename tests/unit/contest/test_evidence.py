@@ -90,4 +90,8 @@ def test_words() -> None:
     (line,) = lines(found)
     assert line.startswith("no step raises `p + q + r`, which is 1 at first; where `p + q >= 2`")
     assert line.endswith("it would be at least 2")
+    never = evidence("reach and 2 false sum 1 0 1 0", RING, str, time.monotonic() + 60.0)
+    assert never is not None and list(lines(never)) == [
+        "no marking at all is what is looked for, reachable or not"
+    ]
     assert "no time" in rests_on(("STATE_EQUATION",), is_late=True)

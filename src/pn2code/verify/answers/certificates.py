@@ -18,6 +18,8 @@ MOST_TERMS = 8
 def lines(found: Mapping[str, Any]) -> Iterator[str]:
     """For people."""
     cases = found["cases"]
+    if not cases:
+        yield "no marking at all is what is looked for, reachable or not"
     for case in cases[:MOST_CASES]:
         yield _line(case)
     if len(cases) > MOST_CASES:
