@@ -45,7 +45,6 @@ from pn2code.cli.verify_swarm import (
     SchedulerOption,
     SwarmOption,
     WorkersOption,
-    check_net,
     check_options,
     endings,
     swarm_of,
@@ -330,6 +329,7 @@ def verify(
         ("--approximate", approximate is not None),
         ("--spill", spill is not None),
         ("--threads", threads is not None),
+        ("--durations", durations),
     )
     check_options(swarm, scheduler, workers, reductions, unused)
     d = Diagnostics()
@@ -339,8 +339,6 @@ def verify(
                 net, parse_values(settings), form, int_bits=int_bits, warnings=d, inputs=inputs
             )
             refuse_wide(opened.config, int_bits)
-            if swarm is not None:
-                check_net(opened)
             asked = question(opened, texts, file, d, found=found_properties)
             if unfold and opened.config is not None:
                 raise typer.BadParameter(

@@ -34,6 +34,9 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row(name, what + more)
     if found.swarm is not None:
         yield from row("Swarm", swarm_text.seen(found.swarm))
+        cell = said.control.found if said.control is not None else None
+        if cell is not None and cell.swarm is not None:
+            yield from row("Cell as it runs", swarm_text.seen(cell.swarm))
     elif found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
         yield from row(

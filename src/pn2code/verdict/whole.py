@@ -235,6 +235,8 @@ def look(
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(cell, of_net.sizes))
+    if cell is not None:
+        of_net = replace(of_net, ending=asked.endings_of_net(of_net.ending))
     may_count = is_cell and properties.are_of_states(asked)
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
@@ -251,7 +253,16 @@ def look(
         has_more = checks.channel_model
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
         control = controller.look(
-            opened, cell, found, part, options, folder, d, asked.plain, checks.graph
+            opened,
+            cell,
+            found,
+            part,
+            options,
+            folder,
+            d,
+            asked.plain,
+            checks.graph,
+            checks=checks.controller,
         )
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: channel_model.Answers = ()

@@ -263,6 +263,11 @@ static void give_most(const ex_run_t *run, ex_question_t *question)
 /* What the states alone say, without the way there. False: nothing. */
 static bool answer_by_states(const ex_run_t *run, ex_question_t *question)
 {
+    if ((question->kind == EX_ASK_ENDS) && atomic_load(&question->is_decided)) { /* explore_trap.c */
+        question->answer = EX_NO;
+        question->why = "endless";
+        return true;
+    }
     if (!is_early(run->queries, question)) {
         return false;
     }

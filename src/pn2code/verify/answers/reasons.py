@@ -21,6 +21,8 @@ _CLAUSES = {
     "truncated": "not all markings were seen",
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
     "swarm": "a swarm of searches looks at many markings, and cannot know whether it has seen all",
+    "graphless": "the searches of a swarm keep no graph, which this answer needs",
+    "colourless": "the searches of a swarm do not keep the values of tokens, which this answer needs",
     "reduction": "the reduction of the state space does not preserve it",
     "endless": "the response is not finite",
     "speeds": "it depends on the order of events, and so on their durations",
