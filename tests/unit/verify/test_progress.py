@@ -1,0 +1,95 @@
+"""Weights of places by which no occurrence makes a marking smaller."""
+
+from __future__ import annotations
+
+from helpers.netbuilder import flat
+from pn2code.structure.skeleton import Mode
+from pn2code.verify.exploring.progress import Progress, rising_by
+
+NET = """
+net measured
+  standard
+  var n: INT;
+  page Top
+    place Parts = 5
+    place Idle = 1
+    place Busy
+    place Box
+    place Some : INT
+    place Many : INT
+    trans Take
+      in Parts : ()
+      in Idle : ()
+      out Busy : ()
+    trans Back
+      in Busy : ()
+      out Idle : ()
+      out Box : ()
+    trans Round
+      both Idle : ()
+      both Box : ()
+    trans Turn
+      in Some : n
+      out Many : n`n
+"""
+PARTS, IDLE, BUSY, BOX, SOME, MANY = range(6)
+TAKE, BACK, ROUND, TURN = range(4)
+
+
+def measured(text: str = NET, *, timed: bool = False) -> Progress | None:
+    """The measure of a net."""
+    return Progress.of(flat(text), {}, timed=timed)
+
+
+def changes(found: Progress, *deltas: dict[int, int]) -> list[int]:
+    """What each occurrence adds to the sum."""
+    return [sum(found.weights.get(p, 0) * n for p, n in delta.items()) for delta in deltas]
+
+
+def test_what_goes_on_makes_the_sum_greater_and_what_goes_round_does_not() -> None:
+    found = measured()
+    assert found is not None
+    assert found.rising == {TAKE, BACK, TURN}
+    take, back = changes(found, {PARTS: -1, IDLE: -1, BUSY: 1}, {BUSY: -1, IDLE: 1, BOX: 1})
+    assert take > 0
+    assert back > 0
+
+
+def test_a_number_of_tokens_that_a_binding_decides_does_not_count() -> None:
+    found = measured()
+    assert found is not None
+    assert MANY not in found.weights
+    assert found.weights[SOME] < 0  # it only loses tokens
+
+
+def test_where_all_goes_round_there_is_no_measure() -> None:
+    text = "net round\n  standard\n  place A = 1\n  place B\n"
+    for name, a, b in (("Go", "A", "B"), ("Come", "B", "A")):
+        text += f"  trans {name}\n    in {a} : ()\n    out {b} : ()\n"
+    assert measured(text) is None
+    assert measured(text, timed=True) is None
+
+
+def test_time_goes_on_where_markings_have_it() -> None:
+    text = "net clock\n  colset T = int timed;\n  var n: T;\n  place A : T = 1`0\n"
+    text += "  trans Tick\n    in A : n\n    out A : n@+3\n"
+    found = measured(text, timed=True)
+    assert found is not None
+    assert found.text() == "time\n"
+    assert found.names(flat(text)) == "the time"
+    assert measured(text) is None  # it is left out of markings
+
+
+def test_the_table_and_the_sum_for_people_have_the_places_in_their_order() -> None:
+    found = Progress({PARTS: -2, BOX: 1}, frozenset({BACK}), by_time=True)
+    assert found.text() == f"{PARTS} -2\n{BOX} 1\ntime\n"
+    assert found.names(flat(NET)) == "- 2 * Top.Parts + Top.Box + the time"
+
+
+def test_weights_that_make_a_sum_smaller_once_are_no_measure() -> None:
+    up, down = (Mode(t, (), {}, {}, {BOX: n}, frozenset()) for t, n in ((0, 1), (1, -1)))
+    assert rising_by({BOX: 1}, [up]) == {0}
+    assert rising_by({BOX: 1}, [up, down]) == frozenset()
+    # A transition that makes it greater in one of its ways only is not counted.
+    same = Mode(0, (), {}, {}, {}, frozenset())
+    assert rising_by({BOX: 1}, [up, same]) == frozenset()
