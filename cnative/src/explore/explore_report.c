@@ -15,6 +15,7 @@
 #include "query/explore_query.h"
 #include "query/explore_early.h"
 #include "swarm/explore_swarm.h"
+#include "sweep/explore_sweep.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -151,6 +152,9 @@ static void print_report(ex_run_t *run, bool is_last, FILE *out)
     ex_queries_json(run, !is_last, out);
     if (run->swarm != NULL) {
         ex_swarm_json(run, out);
+    }
+    if (run->sweep != NULL) {
+        ex_sweep_json(run, out);
     }
     (void)fprintf(out, "}\n");
 }

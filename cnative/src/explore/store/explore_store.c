@@ -200,6 +200,12 @@ void ex_store_free(ex_store_t *store)
     store->bucket = NULL;
 }
 
+void ex_store_empty(ex_store_t *store)
+{
+    (void)memset(store->bucket, 0, ex_store_bytes(store));
+    atomic_store(&store->used, 0U);
+}
+
 uint64_t ex_store_bytes(const ex_store_t *store)
 {
     return store->buckets * (uint64_t)LINE;

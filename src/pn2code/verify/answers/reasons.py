@@ -21,6 +21,7 @@ _CLAUSES = {
     "truncated": "not all markings were seen",
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
     "swarm": "a swarm of searches looks at many markings, and cannot know whether it has seen all",
+    "sweep": "markings were forgotten on the way, and it is about runs, which need the graph between all of them",
     "reduction": "the reduction of the state space does not preserve it",
     "endless": "the response is not finite",
     "speeds": "it depends on the order of events, and so on their durations",

@@ -27,7 +27,7 @@ from pn2code.verify.codes import (
     SPILL_FULL,
     TIME_OVER,
 )
-from pn2code.verify.exploring import covering, nondeterminism, programs
+from pn2code.verify.exploring import covering, nondeterminism, programs, sweep
 from pn2code.verify.exploring.counts import Counts
 from pn2code.verify.exploring.explorer_process import nothing, run_with_tables
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction, default_memory
@@ -171,6 +171,8 @@ def explore(
         net, storage, open_places, is_limited=is_limited, time_alone=time_alone
     ) as search:
         found = _explored(net, storage, limits, d, options, search if options.covering else None)
+        if found is not None and limits.sweeps is None and sweep.may_help(found):
+            found = _swept_after(net, storage, limits, d, options, found)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not options.covering or not is_open:
             return found
@@ -181,6 +183,25 @@ def explore(
         trace = options.traces / f"{options.stem}.unbounded.trace.jsonl"
         run = covering.kept(run, net, storage, trace)
     return replace(found, why=INFINITE, covering=run)
+
+
+def _swept_after(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    options: ExploreOptions,
+    first: Exploration,
+) -> Exploration:
+    """What was found within the limit of memory, with what an exploration that forgets markings finds besides."""
+    unheard = Diagnostics()
+    with suppress(TimeIsOverError), limits.deadline.enforced():
+        if sweep.measure(net, storage, limits.reductions, unheard) is None:
+            return first
+        options.stage("exploring once more, forgetting markings that cannot come back ...")
+        again = _explored(net, storage, replace(limits, sweeps=True), unheard, options, None)
+        return first if again is None else sweep.joined(first, again)
+    return first
 
 
 def _may_go_on(net: FlatNet, limits: Limits, predicates: Sequence[Predicate]) -> bool:
@@ -228,6 +249,8 @@ def _explored(
             if nondeterminism.refuse(net, d):
                 return None
             chosen = possible(net, limits.reductions, d, options.predicates)
+            if limits.sweeps:
+                chosen = sweep.chosen(net, storage, chosen, d)
             made = options.generated or Generated()
             sizes = made.sizes or options.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
@@ -312,6 +335,14 @@ def _explored(
                 refuse(reduction, error["message"], Origin(net.file), d)
             chosen = chosen.without_elements()
             continue
+        if error and error["kind"] == "sweep":
+            d.error(
+                EXPLORER_FAILED,
+                f"the explorer refuses to forget markings: {error['message']}",
+                Origin(net.file),
+                hint="explore with `--no-sweep`",
+            )
+            return None
         if error and error["kind"] == "mismatch":
             _differs(net, error, d)
             return None
@@ -319,7 +350,9 @@ def _explored(
             return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
         if not error or error["kind"] not in ("capacity", "memory"):
             return replace(
-                Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
+                Exploration.of(net, found, compiling),
+                symmetries=chosen.symmetry_names(),
+                measure=chosen.progress.names(net) if chosen.progress else "",
             )
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         if (

@@ -13,6 +13,7 @@ from pn2code.verify.exploring import time_reduction
 from pn2code.verify.exploring.dependency import Dependency, dependency
 from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
 from pn2code.verify.exploring.limits import Reduction
+from pn2code.verify.exploring.progress import Progress
 from pn2code.verify.exploring.time_reduction import NotReducible
 
 WHY_NOT_REDUCIBLE: dict[Reduction, Callable[..., NotReducible | None]] = {
@@ -38,11 +39,13 @@ class Chosen:
         reductions: which.
         elements: the table of binding elements, None: none of them needs it.
         dependency: what partial order rests on instead where there is no such table.
+        progress: the measure in the order of which markings are looked at, and forgotten; None: in another one.
     """
 
     reductions: tuple[Reduction, ...]
     elements: Elements | None
     dependency: Dependency | None = None
+    progress: Progress | None = None
 
     def without_elements(self) -> Chosen:
         """Those that need no table."""
