@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 
 from helpers.concurrent_nets import concurrent
 from helpers.explored import Explorers
-from helpers.netbuilder import flat
+from helpers.netbuilder import flat, write
 from helpers.random_nets import random_net
 from helpers.swept import compare, random_weights, table
 from helpers.thorough import amount
+from pn2code.cli import main
+from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
+from pn2code.verify.answers.path import steps
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.progress import Progress
 
 pytestmark = pytest.mark.cc
@@ -82,5 +89,101 @@ def test_of_a_line_of_parts_few_markings_are_known_at_a_time(
     assert found["complete"]
     assert found["sweep"]["most_known"] * 3 < found["nodes"]
     assert found["graph"] is None
+    assert found["peak_mib"] < 64  # its own, not that of the process that has started it
     (trace,) = found["traces"]
     assert trace["steps"] == 6 + 6 + 6 + 3
+
+
+COUNTED = """
+    net Counted
+      standard
+      var n : INT;
+      place Feeder = 6
+      place Tray
+      place Done
+      place Count : INT = 1`0
+      trans Put
+        in Feeder : ()
+        out Tray : ()
+      trans Stow
+        in Tray : ()
+        in Count : n
+        out Count : n + 1
+        out Done : ()
+"""
+ROUND = """
+    net Round
+      standard
+      place Here = 1
+      place There
+      trans Go
+        in Here : ()
+        out There : ()
+      trans Come
+        in There : ()
+        out Here : ()
+"""
+RAISES = COUNTED.replace("Count : n + 1", "Count : n + 1 + 0 * (1 div (4 - n))")
+
+
+def verified(
+    text: str, folder: Path, capsys: pytest.CaptureFixture[str], *options: str
+) -> tuple[int, dict[str, Any]]:
+    """The exit code and the JSON of `verify --sweep`."""
+    path = write(text, folder / "net.cpn")
+    with pytest.raises(SystemExit) as left:
+        main.app(["verify", str(path), "--traces", str(folder), "--sweep", "--json", *options])
+    return int(left.value.code or 0), json.loads(capsys.readouterr().out)
+
+
+def test_what_is_wrong_has_a_run_that_the_token_game_plays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    properties = (
+        "never { size (Mark.Top'Tray 1) > 4 }",
+        "bound Top'Done <= 6",
+        "reachable { size (Mark.Top'Tray 1) = 6 }",
+        "deadlock free",
+        "ctl AG EF { size (Mark.Top'Done 1) = 6 }",
+    )
+    asked = [text for p in properties for text in ("--property", p)]
+    code, said = verified(COUNTED, tmp_path, capsys, *asked)
+    assert code == 1
+    answers = {a["answer"]: a for a in said["properties"]}
+    assert [a["answer"] for a in said["properties"]] == ["no", "yes", "yes", "no", "inconclusive"]
+    assert "graph" in answers["inconclusive"]["why"]
+    assert said["sweep"]["most_known"] < said["nodes"]
+    # A run that the token game does not play is no answer (`confirm`).
+    assert all(a["evidence"] for a in said["properties"] if a["answer"] == "no")
+    net = flat(COUNTED)
+    assert len(steps(net, {}, Path(said["traces"][0]["file"]), most=100)) == 12
+
+
+def test_an_exception_has_its_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, said = verified(RAISES, tmp_path, capsys)
+    assert code == 1
+    assert said["error"]["binding"] == {"n": "4"}
+    assert said["error"]["trace"]["steps"] >= 9
+
+
+def test_what_exceeds_the_memory_is_explored_once_more_and_forgotten() -> None:
+    net = flat(PARTS.replace("Feeder = 6", "Feeder = 300"))
+    options = ExploreOptions(questions="within 4 0 300\n? bound 0 0 300\nef 0\n? initially 1\n")
+    found = explore(net, {}, Limits(memory=2, sweeps=False), Diagnostics(), options)
+    assert found is not None
+    assert (found.why, found.seen.markings) == ("memory", False)
+    found = explore(net, {}, Limits(memory=2, sweeps=None), Diagnostics(), options)
+    assert found is not None
+    assert found.complete
+    assert found.sweep is not None
+    assert found.sweep["forgettings"] > 0
+    assert [a["answer"] for a in found.answers] == ["yes", "unknown"]
+
+
+def test_without_a_measure_nothing_is_forgotten_and_a_warning_says_so() -> None:
+    d = Diagnostics()
+    found = explore(flat(ROUND), {}, Limits(sweeps=True), d, ExploreOptions())
+    assert found is not None
+    assert found.complete
+    assert found.sweep is None
+    assert [w.code for w in d] == ["sweep-not-possible"]
