@@ -54,9 +54,43 @@ PARTS = """
 """
 
 
+TALLY = """
+    net Tally
+      standard
+      colset TALLY = record good : INT * bad : INT;
+      colset FEW = product INT * INT;
+      colset SMALL = int with 0..5;
+      var t : TALLY;
+      var s : SMALL;
+      var n, k : INT;
+      place Tally : TALLY = 1`{good = 0, bad = 0}
+      place Left : INT = 1`4
+      place Pair : FEW = 1`(0, ~3) ++ 1`(1, 0)
+      place Few : SMALL = 2`0
+      trans Good
+        in Tally : t
+        in Left : n
+        guard [n > 0]
+        out Tally : {good = #good t + 1, bad = #bad t}
+        out Left : n - 1
+      trans Bad
+        in Tally : {good = n, bad = k}
+        guard [n + k < 6]
+        out Tally : {good = n, bad = 2 + k}
+      trans More
+        in Pair : (n, k)
+        guard [n < 3]
+        out Pair : (n + 1, k)
+      trans Up
+        in Few : s
+        guard [s < 5]
+        out Few : s + 1
+"""
+
+
 def nets(count: int) -> list[FlatNet]:
     """Nets at random, of all kinds, and the one above."""
-    found = [flat(PARTS)]
+    found = [flat(PARTS), flat(TALLY)]
     for seed in range(count):
         r = Random(seed)
         text = concurrent(seed, 2) if seed % 2 else random_net(r)
@@ -76,6 +110,18 @@ def test_a_wrong_measure_is_refused_or_does_no_harm(explorers: Explorers) -> Non
         said[compare(explorers, net, weights=random_weights(net, r))] += 1
     said[compare(explorers, flat(PARTS), weights="0 1\n")] += 1  # the feeder only gets empty
     assert said["refused"] >= 1, said
+
+
+def test_numbers_in_tokens_count(explorers: Explorers, tmp_path: Path) -> None:
+    net = flat(TALLY)
+    measure = Progress.of(net, {}, timed=True)
+    assert measure is not None
+    assert len(measure.rising) == 4
+    assert not any(amount.label is None for amount in measure.weights)
+    found = explorers.explore(net, *table(tmp_path, measure.text())).report
+    assert found["complete"]
+    assert found["sweep"]["layers"] > 10
+    assert found["sweep"]["most_known"] * 2 < found["nodes"]
 
 
 def test_of_a_line_of_parts_few_markings_are_known_at_a_time(

@@ -11,6 +11,7 @@ from random import Random
 from typing import Any
 
 from helpers.explored import Explored, Explorers
+from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.flat import FlatNet
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.progress import Progress
@@ -26,10 +27,27 @@ def table(folder: Path, text: str) -> Sequence[str]:
     return ("--sweep", str(path), "--forgetful")
 
 
+def number_in(colset: Colset, r: Random) -> str:
+    """The number in a token, as the explorer reads it; "": there is none."""
+    base = colset.resolved
+    if base.kind in (Kind.INT, Kind.INDEX):
+        return "="
+    if base.kind not in (Kind.RECORD, Kind.PRODUCT):
+        return ""
+    labels = base.labels if base.kind is Kind.RECORD else map(str, range(1, 99))
+    kinds = [None if part is None else part.resolved.kind for part in base.components]
+    numbers = [k for k, kind in zip(labels, kinds, strict=False) if kind is Kind.INT]
+    return r.choice(numbers) if numbers else ""
+
+
 def random_weights(flat: FlatNet, r: Random) -> str:
     """A table that is most probably wrong."""
-    places = [p.index for p in flat.places if r.random() < 0.4]
-    lines = [f"{p} {r.choice((-3, -1, 1, 1, 2))}\n" for p in places]
+    amounts = [(p.index, "") for p in flat.places if r.random() < 0.4]
+    for p in flat.places:
+        label = number_in(p.colset, r)
+        if label and r.random() < 0.3:
+            amounts.append((p.index, f" {label}"))
+    lines = [f"{p} {r.choice((-3, -1, 1, 1, 2))}{label}\n" for p, label in amounts]
     return "".join([*lines, *(["time\n"] if r.random() < 0.5 else [])])
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from helpers.netbuilder import flat
-from pn2code.structure.skeleton import Mode
-from pn2code.verify.exploring.progress import Progress, rising_by
+from pn2code.verify.exploring.grown_values import Amount, changes
+from pn2code.verify.exploring.progress import Change, Progress, rising_by
 
 NET = """
 net measured
@@ -41,16 +41,16 @@ def measured(text: str = NET, *, timed: bool = False) -> Progress | None:
     return Progress.of(flat(text), {}, timed=timed)
 
 
-def changes(found: Progress, *deltas: dict[int, int]) -> list[int]:
+def added(found: Progress, *deltas: dict[int, int]) -> list[int]:
     """What each occurrence adds to the sum."""
-    return [sum(found.weights.get(p, 0) * n for p, n in delta.items()) for delta in deltas]
+    return [sum(found.weights.get(Amount(p), 0) * n for p, n in delta.items()) for delta in deltas]
 
 
 def test_what_goes_on_makes_the_sum_greater_and_what_goes_round_does_not() -> None:
     found = measured()
     assert found is not None
     assert found.rising == {TAKE, BACK, TURN}
-    take, back = changes(found, {PARTS: -1, IDLE: -1, BUSY: 1}, {BUSY: -1, IDLE: 1, BOX: 1})
+    take, back = added(found, {PARTS: -1, IDLE: -1, BUSY: 1}, {BUSY: -1, IDLE: 1, BOX: 1})
     assert take > 0
     assert back > 0
 
@@ -58,8 +58,8 @@ def test_what_goes_on_makes_the_sum_greater_and_what_goes_round_does_not() -> No
 def test_a_number_of_tokens_that_a_binding_decides_does_not_count() -> None:
     found = measured()
     assert found is not None
-    assert MANY not in found.weights
-    assert found.weights[SOME] < 0  # it only loses tokens
+    assert Amount(MANY) not in found.weights
+    assert found.weights[Amount(SOME)] < 0  # it only loses tokens
 
 
 def test_where_all_goes_round_there_is_no_measure() -> None:
@@ -81,15 +81,70 @@ def test_time_goes_on_where_markings_have_it() -> None:
 
 
 def test_the_table_and_the_sum_for_people_have_the_places_in_their_order() -> None:
-    found = Progress({PARTS: -2, BOX: 1}, frozenset({BACK}), by_time=True)
-    assert found.text() == f"{PARTS} -2\n{BOX} 1\ntime\n"
-    assert found.names(flat(NET)) == "- 2 * Top.Parts + Top.Box + the time"
+    found = Progress(
+        {Amount(PARTS): -2, Amount(BOX): 1, Amount(SOME, ""): 3, Amount(MANY, "k"): -1},
+        frozenset({BACK}),
+        by_time=True,
+    )
+    assert found.text() == f"{PARTS} -2\n{BOX} 1\n{SOME} 3 =\n{MANY} -1 k\ntime\n"
+    said = "- 2 * Top.Parts + Top.Box + 3 * value of Top.Some - k of Top.Many + the time"
+    assert found.names(flat(NET)) == said
 
 
 def test_weights_that_make_a_sum_smaller_once_are_no_measure() -> None:
-    up, down = (Mode(t, (), {}, {}, {BOX: n}, frozenset()) for t, n in ((0, 1), (1, -1)))
-    assert rising_by({BOX: 1}, [up]) == {0}
-    assert rising_by({BOX: 1}, [up, down]) == frozenset()
+    box = Amount(BOX)
+    up, down = (Change(t, {box: n}) for t, n in ((0, 1), (1, -1)))
+    assert rising_by({box: 1}, [up]) == {0}
+    assert rising_by({box: 1}, [up, down]) == frozenset()
     # A transition that makes it greater in one of its ways only is not counted.
-    same = Mode(0, (), {}, {}, {}, frozenset())
-    assert rising_by({BOX: 1}, [up, same]) == frozenset()
+    assert rising_by({box: 1}, [up, Change(0, {})]) == frozenset()
+
+
+TALLY = """
+net tally
+  standard
+  colset TALLY = record good: INT * bad: INT;
+  colset PAIR = product INT * INT;
+  var t: TALLY;
+  var n, k: INT;
+  page Top
+    place Tally : TALLY = 1`{good = 0, bad = 0}
+    place Left : INT = 1`3
+    place Pair : PAIR = 1`(0, 0)
+    place Odd : INT = 1`0
+    trans Good
+      in Tally : t
+      in Left : n
+      out Tally : {good = #good t + 1, bad = #bad t}
+      out Left : n - 1
+    trans Bad
+      in Tally : {good = n, bad = k}
+      out Tally : {good = n, bad = 2 + k}
+    trans Swap
+      in Pair : (n, k)
+      out Pair : (n + 1 - 3, n)
+    trans Reset
+      in Left : 0
+      out Left : 7
+      both Tally : t
+    trans Double
+      in Odd : n
+      out Odd : n + n
+"""
+
+
+def test_numbers_in_tokens_that_change_by_constants_count() -> None:
+    good, bad, swap, reset, _ = range(5)
+    tally, left, pair = range(3)
+    assert changes(flat(TALLY)) == {
+        Amount(tally, "good"): {good: 1},
+        Amount(tally, "bad"): {bad: 2},
+        Amount(left, ""): {good: -1, reset: 7},
+        Amount(pair, "1"): {swap: -2},
+    }
+
+
+def test_a_counter_of_parts_makes_a_measure() -> None:
+    found = measured(TALLY)
+    assert found is not None
+    assert found.rising == {0, 1, 2, 3}

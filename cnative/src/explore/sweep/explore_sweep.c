@@ -20,9 +20,10 @@
 #include <string.h>
 
 #include "../explore_bounds.h"
+#include "../../marking/pn_multiset_impl.h"
 #include "../search/explore_search.h"
 #include "pn/pn_marking.h"
-#include "pn/pn_multiset.h"
+#include "pn/pn_packed.h"
 #include "pn/pn_text.h"
 
 #define MOST_DEAD  1000U      /* dead states to which there may be runs */
@@ -38,9 +39,12 @@ typedef struct group {
     ex_chunk_t *last;
 } group_t;
 
+/* Of a token; or of the number in it, which is so far from its beginning. */
 typedef struct weight {
     uint32_t place;
     int64_t each;
+    bool is_of_value;
+    size_t offset;
 } weight_t;
 
 struct ex_sweep {
@@ -72,6 +76,23 @@ struct ex_sweep {
 
 /* --- the table ---------------------------------------------------------------------------------------------------- */
 
+/* The number in a value: "=", it is one; else the component with that label is. False: there is none. */
+static bool find_number(const pn_type_t *type, const char *label, size_t *offset)
+{
+    *offset = 0U;
+    if (strcmp(label, "=") == 0) {
+        return type->kind == PN_KIND_INT;
+    }
+    for (uint32_t i = 0U; (type->kind == PN_KIND_RECORD) && (i < type->count); i++) {
+        if (strcmp(type->field[i].label, label) == 0) {
+            *offset = type->field[i].offset;
+            return type->field[i].type->kind == PN_KIND_INT;
+        }
+    }
+    return false;
+}
+
+/* A line without its end. */
 static bool add_weight(ex_sweep_t *sweep, const char *line)
 {
     char *end = NULL;
@@ -80,10 +101,14 @@ static bool add_weight(ex_sweep_t *sweep, const char *line)
     const long long each = strtoll(end, &end, 10);
     weight_t *const more = realloc(sweep->weight, ((size_t)sweep->weights + 1U) * sizeof *more);
     sweep->weight = (more != NULL) ? more : sweep->weight;
-    if ((more == NULL) || (errno != 0) || (place >= pn_net.place_count) || ((*end != '\n') && (*end != '\0'))) {
+    if ((more == NULL) || (errno != 0) || (place >= pn_net.place_count) || ((*end != ' ') && (*end != '\0'))) {
         return false;
     }
-    more[sweep->weights] = (weight_t){ .place = (uint32_t)place, .each = each };
+    weight_t *const own = &more[sweep->weights];
+    *own = (weight_t){ .place = (uint32_t)place, .each = each, .is_of_value = *end == ' ' };
+    if (own->is_of_value && !find_number(pn_net.place[place].multiset->type, &end[1], &own->offset)) {
+        return false;
+    }
     sweep->weights++;
     sweep->needs_places = sweep->needs_places || !pn_net.place[place].multiset->is_packed;
     return true;
@@ -96,7 +121,8 @@ bool ex_sweep_read(ex_run_t *run)
     FILE *const file = fopen(run->options.sweep, "r");
     bool is_fine = (sweep != NULL) && (file != NULL);
     while (is_fine && (fgets(line, (int)sizeof line, file) != NULL)) {
-        const bool is_time = strcmp(line, "time\n") == 0;
+        line[strcspn(line, "\n")] = '\0';
+        const bool is_time = strcmp(line, "time") == 0;
         sweep->counts_time = sweep->counts_time || (is_time && !pn_net.real_time);
         is_fine = is_time || add_weight(sweep, line);
     }
@@ -122,6 +148,44 @@ static int64_t added(int64_t a, int64_t b)
     return (b > 0) ? INT64_MAX : INT64_MIN;
 }
 
+static int64_t product(uint64_t count, int64_t each)
+{
+    int64_t found = 0;
+    if ((count <= (uint64_t)INT64_MAX) && !__builtin_mul_overflow((int64_t)count, each, &found)) {
+        return found;
+    }
+    return (each > 0) ? INT64_MAX : INT64_MIN;
+}
+
+/* The number in so many equal tokens. */
+static int64_t numbers(const weight_t *weight, const void *value, uint64_t count)
+{
+    int64_t number = 0;
+    (void)memcpy(&number, (const unsigned char *)value + weight->offset, sizeof number);
+    return product(count, number);
+}
+
+/* The sum of the numbers in the tokens of a place. */
+static int64_t sum_of(const weight_t *weight, const void *marking)
+{
+    const pn_multiset_t *const multiset = pn_net.place[weight->place].multiset;
+    const uint64_t *const word = marking;
+    int64_t sum = 0;
+    for (uint32_t i = 0U; multiset->is_packed && (i < multiset->colours); i++) {
+        const uint32_t count = pn_counter(word, multiset->bit, multiset->width, i);
+        if (count > 0U) {
+            pn_colour_t colour;
+            multiset->colour_of(i, &colour);
+            sum = added(sum, numbers(weight, &colour, count));
+        }
+    }
+    for (uint32_t i = 0U; !multiset->is_packed && (i < pn_multiset_used(multiset, marking)); i++) {
+        const unsigned char *const entry = pn_multiset_entry(multiset, marking, i);
+        sum = added(sum, numbers(weight, &entry[multiset->value], pn_multiset_count_of(multiset, entry)));
+    }
+    return sum;
+}
+
 /* Of a state, which is loaded for it. False after an error. */
 static bool measure_of(ex_worker_t *worker, const ex_key_t *key, int64_t *measure)
 {
@@ -132,12 +196,14 @@ static bool measure_of(ex_worker_t *worker, const ex_key_t *key, int64_t *measur
     *measure = sweep->counts_time ? pn_now(&pn_net, worker->marking).integer : 0;
     for (uint32_t i = 0U; i < sweep->weights; i++) {
         const weight_t *const weight = &sweep->weight[i];
-        const uint64_t tokens = pn_multiset_total(pn_net.place[weight->place].multiset, worker->marking);
-        int64_t product = 0;
-        if ((tokens > (uint64_t)INT64_MAX) || __builtin_mul_overflow((int64_t)tokens, weight->each, &product)) {
-            product = (weight->each > 0) ? INT64_MAX : INT64_MIN;
+        if (weight->is_of_value) {
+            const int64_t sum = sum_of(weight, worker->marking);
+            const uint64_t size = (sum < 0) ? (0U - (uint64_t)sum) : (uint64_t)sum;
+            *measure = added(*measure, product(size, (sum < 0) ? -weight->each : weight->each));
+        } else {
+            const pn_multiset_t *const multiset = pn_net.place[weight->place].multiset;
+            *measure = added(*measure, product(pn_multiset_total(multiset, worker->marking), weight->each));
         }
-        *measure = added(*measure, product);
     }
     return true;
 }

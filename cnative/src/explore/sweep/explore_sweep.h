@@ -9,7 +9,8 @@
 
 typedef struct ex_sweep ex_sweep_t;
 
-/* Reads the table of `--sweep`: lines of a place and its weight; `time`. False: what is wrong has been said. */
+/* Reads the table of `--sweep`: lines of a place and what a token of it counts, or (with `=`, or the label of a
+ * component) the number in it; `time`. False: what is wrong has been said. */
 bool ex_sweep_read(ex_run_t *run);
 /* Behind the initial state, which is in the store. False: no memory. */
 bool ex_sweep_begin(ex_run_t *run);

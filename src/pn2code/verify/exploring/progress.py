@@ -5,6 +5,8 @@
 
     parts on the feeder 0, in the mill 1, on the pallet 2: each step of a part makes the sum greater by 1
 
+Numbers in tokens count as numbers of tokens do (`- value of Left`), where they change by constants (`grown_values`).
+
 Where markings are gone through in the order of such a sum, those with a smaller one than that at hand can be forgotten:
 none of them comes back (S. Christensen, L. M. Kristensen, T. Mailund, *A sweep-line method for state space
 exploration*, TACAS 2001). A weight may be negative, and places of which a change is not known exactly have none. The
@@ -26,8 +28,10 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 from pn2code.structure.analysis import start_of
-from pn2code.structure.skeleton import Mode, skeleton
+from pn2code.structure.skeleton import skeleton
 from pn2code.structure.symbolic import Symbolic
+from pn2code.verify.exploring import grown_values
+from pn2code.verify.exploring.grown_values import Amount
 
 _DENOMINATORS = (1, 2, 6, 60, 2_520)
 _NOTHING = 1e-7
@@ -36,16 +40,24 @@ _MOST_WEIGHT = 1 << 31
 
 
 @frozen
+class Change:
+    """What one of the ways in which a transition occurs does to amounts; those that are not there stay as they are."""
+
+    transition: int
+    delta: Mapping[Amount, int]
+
+
+@frozen
 class Progress:
-    """Weights of places.
+    """Weights of places, and of the numbers that their tokens have.
 
     Args:
-        weights: by place, what a token counts; places that are not there count nothing.
+        weights: of the amounts that count.
         rising: transitions each occurrence of which makes the sum greater.
         by_time: whether the model time counts, too.
     """
 
-    weights: Mapping[int, int]
+    weights: Mapping[Amount, int]
     rising: frozenset[int]
     by_time: bool
 
@@ -62,66 +74,91 @@ class Progress:
             GameError: a declaration or an initial marking raises an exception.
         """
         by_time = timed and net.timed and not net.real_time
-        modes, weighed = _modes(net, storage)
-        for weights in _candidates(modes, weighed):
-            rising = rising_by(weights, modes)
-            if rising:
-                return Progress(weights, rising, by_time)
+        found = _changes(net, storage)
+        made = [Progress(w, rising_by(w, found), by_time) for w in _candidates(found)]
+        best = max(made, key=lambda p: len(p.rising), default=None)  # of equal ones the first
+        if best is not None and best.rising:
+            return best
         return Progress({}, frozenset(), by_time) if by_time else None
 
     def names(self, net: FlatNet) -> str:
-        """The sum for people: `Milled + 2 * Stowed + the time`."""
-        terms = [(weight, net.places[p].name) for p, weight in sorted(self.weights.items())]
-        texts = [
-            f"{'-' if weight < 0 else '+'} {'' if abs(weight) == 1 else f'{abs(weight)} * '}{name}"
-            for weight, name in terms
-        ]
+        """The sum for people: `Milled + 2 * Stowed - value of Left + the time`."""
+        texts = [f"{_sign(w)} {_called(net, amount)}" for amount, w in _in_order(self.weights)]
         said = " ".join([*texts, *(["+ the time"] if self.by_time else [])])
         return said.removeprefix("+ ")
 
     def text(self) -> str:
-        """The table that the explorer reads: lines of a place and its weight; `time`, where that counts."""
-        lines = [f"{place} {weight}" for place, weight in sorted(self.weights.items())]
+        """The table that the explorer reads: lines of a place, its weight, and, where it is not the tokens that count,
+        the component of their values, `=` for all of it; `time`, where that counts.
+        """
+        lines = [f"{a.place} {weight}{_component(a)}" for a, weight in _in_order(self.weights)]
         return "".join(f"{line}\n" for line in [*lines, *(["time"] if self.by_time else [])])
 
 
-def _modes(net: FlatNet, storage: Mapping[str, str]) -> tuple[tuple[Mode, ...], tuple[int, ...]]:
-    """What transitions change, and the places of which all changes are known exactly."""
+def _in_order(weights: Mapping[Amount, int]) -> list[tuple[Amount, int]]:
+    return sorted(weights.items(), key=lambda w: (w[0].place, w[0].label or "", w[0].label is None))
+
+
+def _component(amount: Amount) -> str:
+    return "" if amount.label is None else f" {amount.label or '='}"
+
+
+def _sign(weight: int) -> str:
+    return f"{'-' if weight < 0 else '+'}{'' if abs(weight) == 1 else f' {abs(weight)} *'}"
+
+
+def _called(net: FlatNet, amount: Amount) -> str:
+    name = net.places[amount.place].name
+    if amount.label is None:
+        return name
+    return f"{amount.label} of {name}" if amount.label else f"value of {name}"
+
+
+def _changes(net: FlatNet, storage: Mapping[str, str]) -> tuple[Change, ...]:
+    """What transitions change, of amounts of which all changes are known exactly."""
     begin = start_of(net, storage, ())
     skel = skeleton(net, Symbolic(net, begin.evaluator))
     modes = tuple(m for m in skel.modes if m.transition not in skel.never)
     unclear = {*skel.resets, *(p for m in modes for p in m.unknown)}
-    touched = {p for m in modes for p in m.delta}
-    return modes, tuple(p for p in range(len(net.places)) if p in touched - unclear)
+    values = grown_values.changes(net)
+    found = []
+    for mode in modes:
+        delta = {Amount(p): n for p, n in mode.delta.items() if n and p not in unclear}
+        delta |= {
+            amount: own[mode.transition] for amount, own in values.items() if mode.transition in own
+        }
+        found.append(Change(mode.transition, delta))
+    return tuple(found)
 
 
-def rising_by(weights: Mapping[int, int], modes: Sequence[Mode]) -> frozenset[int]:
-    """Transitions that make the sum greater in each of their modes; none at all if any mode makes it smaller."""
-    changes = [
-        (m.transition, sum(weights.get(p, 0) * n for p, n in m.delta.items())) for m in modes
-    ]
-    if any(change < 0 for _, change in changes):
+def rising_by(weights: Mapping[Amount, int], found: Sequence[Change]) -> frozenset[int]:
+    """Transitions that make the sum greater in each of their ways; none at all if any of these makes it smaller."""
+    sums = [(c.transition, sum(weights.get(a, 0) * n for a, n in c.delta.items())) for c in found]
+    if any(change < 0 for _, change in sums):
         return frozenset()
-    return frozenset(t for t, _ in changes) - {t for t, change in changes if change == 0}
+    return frozenset(t for t, _ in sums) - {t for t, change in sums if change == 0}
 
 
-def _candidates(modes: Sequence[Mode], weighed: Sequence[int]) -> Iterator[Mapping[int, int]]:
+def _candidates(changes: Sequence[Change]) -> Iterator[Mapping[Amount, int]]:
     """Whole weights that are perhaps right."""
-    found = _solved(modes, weighed)
+    amounts = sorted(
+        {a for c in changes for a in c.delta}, key=lambda a: (a.place, a.label is not None, a.label)
+    )
+    found = _solved(changes, amounts)
     for denominator in _DENOMINATORS if found else ():
         near = {
-            p: Fraction(value).limit_denominator(denominator)
-            for p, value in zip(weighed, found, strict=True)
+            a: Fraction(value).limit_denominator(denominator)
+            for a, value in zip(amounts, found, strict=True)
             if abs(value) > _NOTHING
         }
         scale = lcm(*(w.denominator for w in near.values()))
-        whole = {p: int(w * scale) for p, w in near.items() if w}
+        whole = {a: int(w * scale) for a, w in near.items() if w}
         common = gcd(*whole.values())
         if whole and max(map(abs, whole.values())) <= _MOST_WEIGHT * common:
-            yield {p: w // common for p, w in whole.items()}
+            yield {a: w // common for a, w in whole.items()}
 
 
-def _solved(modes: Sequence[Mode], weighed: Sequence[int]) -> Sequence[float]:
+def _solved(changes: Sequence[Change], amounts: Sequence[Amount]) -> Sequence[float]:
     """Weights with which as many transitions as possible make the sum greater by 1 or more, none smaller.
 
     Sums cannot be made much greater by some transitions to make up for others: of each only a change up to 1 counts.
@@ -129,20 +166,18 @@ def _solved(modes: Sequence[Mode], weighed: Sequence[int]) -> Sequence[float]:
     from scipy.optimize import linprog  # takes a third of a second to load
     from scipy.sparse import csr_array
 
-    column = {p: i for i, p in enumerate(weighed)}
-    order = {t: len(weighed) + i for i, t in enumerate(sorted({m.transition for m in modes}))}
+    column = {a: i for i, a in enumerate(amounts)}
+    order = {t: len(amounts) + i for i, t in enumerate(sorted({c.transition for c in changes}))}
     entries: list[tuple[int, int, int]] = []
-    for row, mode in enumerate(
-        modes
-    ):  # what counts of the transition, less the change, is 0 at most
-        entries += [(row, column[p], -n) for p, n in mode.delta.items() if p in column and n]
-        entries.append((row, order[mode.transition], 1))
-    if not entries or not weighed:
+    for row, change in enumerate(changes):  # what counts of it, less the change, is 0 at most
+        entries += [(row, column[a], -n) for a, n in change.delta.items()]
+        entries.append((row, order[change.transition], 1))
+    if not amounts:
         return ()
     at = ([r for r, _, _ in entries], [c for _, c, _ in entries])
-    shape = (len(modes), len(weighed) + len(order))
+    shape = (len(changes), len(amounts) + len(order))
     matrix: Any = csr_array(([n for *_, n in entries], at), shape=shape)
-    goal = [0.0] * len(weighed) + [-1.0] * len(order)
-    limits = [*((None, None) for _ in weighed), *((0.0, 1.0) for _ in order)]
-    found = linprog(goal, A_ub=matrix, b_ub=[0.0] * len(modes), bounds=limits, method="highs")
-    return () if found.x is None else [float(x) for x in found.x[: len(weighed)]]
+    goal = [0.0] * len(amounts) + [-1.0] * len(order)
+    limits = [*((None, None) for _ in amounts), *((0.0, 1.0) for _ in order)]
+    found = linprog(goal, A_ub=matrix, b_ub=[0.0] * len(changes), bounds=limits, method="highs")
+    return () if found.x is None else [float(x) for x in found.x[: len(amounts)]]
