@@ -3,8 +3,9 @@
     changes(net)[Amount(place, "stored")]      # {transition: 1, ...}; what is not there does not change it
 
 A transition that takes `t`, or `{stored = n, scrapped = k}`, and puts `{stored = #stored t + 1, scrapped = ...}` or
-`n + 1` makes the sum greater by 1, however many tokens the place holds. A place of which another use is made (a term
-for several tokens, a condition, a reset arc, any other expression) is left out.
+`n + 1` makes the sum greater by 1, however many tokens the place holds; so does one that puts a token 1, or takes a
+token ~1. A place of which another use is made (a term for several tokens, a condition, a reset arc, any other
+expression) is left out.
 """
 
 from __future__ import annotations
@@ -67,22 +68,36 @@ def _of(net: FlatNet, place: int, label: str) -> dict[int, int] | None:
 
 def _change(t: FlatTransition, arcs: list[FlatArc], label: str) -> int | None:
     """By how much an occurrence changes the sum; None: that is not known."""
-    of = {a.kind: a for a in arcs}
-    taken, put = of.get(ArcKind.INPUT), of.get(ArcKind.OUTPUT)
-    if len(arcs) != 2 or taken is None or put is None or taken.inscription is None:
+    kinds = [a.kind for a in arcs]
+    if not set(kinds) <= {ArcKind.INPUT, ArcKind.OUTPUT} or len(set(kinds)) < len(kinds):
         return None
-    terms, value = taken.inscription.terms, token_put(put)
-    if len(terms) != 1 or terms[0].whole or value is None:
+    term: Term | None = None
+    value: core.Exp | None = None
+    for arc in arcs:
+        if arc.kind is ArcKind.INPUT:
+            term = _one_token(arc)
+        else:
+            value = token_put(arc)
+    before: core.Symbol | int | None = 0  # where nothing is taken
+    whole = None
+    if ArcKind.INPUT in kinds:
+        if term is None:
+            return None
+        before, whole = _before(term, label)
+    if t.code is not None and {before, whole}.intersection(t.code.outputs):
         return None
-    coefficient = terms[0].coefficient
-    if not isinstance(coefficient, core.Lit) or coefficient.value != 1:
-        return None
-    outputs = t.code.outputs if t.code is not None else ()
-    before, whole = _before(terms[0], label)
-    if {before, whole}.intersection(outputs):
-        return None
-    after = _component(value, label, whole)
+    if ArcKind.OUTPUT not in kinds:
+        return -before if isinstance(before, int) else None
+    after = None if value is None else _component(value, label, whole)
     return None if after is None else _difference(before, after, label, whole)
+
+
+def _one_token(arc: FlatArc) -> Term | None:
+    """The term of an arc that takes one token, whatever the binding is; None: it takes others."""
+    terms = arc.inscription.terms if arc.inscription is not None else ()
+    if len(terms) != 1 or terms[0].whole or _number(terms[0].coefficient) != 1:
+        return None
+    return terms[0]
 
 
 def _number(e: core.Exp) -> int | None:
