@@ -16,7 +16,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.progress import Progress
 
-SAME = ("complete", "why", "nodes", "arcs", "dead_count", "fired", "bounds", "expanded", "arena")
+SAME = ("complete", "why", "nodes", "arcs", "dead_count", "fired", "expanded", "arena")
 """Of a report that are to be the same where all was seen."""
 
 
@@ -85,6 +85,14 @@ def compare(
     return _verdict(whole, swept, is_given=is_given)
 
 
+def _in_order(bounds: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """With the colours of multi-sets in one order: explorers have them in that in which they came upon them."""
+    return [
+        {k: sorted(map(repr, v)) if isinstance(v, list) else v for k, v in own.items()}
+        for own in bounds
+    ]
+
+
 def _verdict(whole: Mapping[str, Any], swept: Explored, *, is_given: bool) -> str:
     report = swept.report
     if report["error"] and report["error"]["kind"] == "sweep":
@@ -95,6 +103,7 @@ def _verdict(whole: Mapping[str, Any], swept: Explored, *, is_given: bool) -> st
     if whole["why"] == "complete":
         for key in SAME:
             assert report[key] == whole[key], (key, report[key], whole[key])
+        assert _in_order(report["bounds"]) == _in_order(whole["bounds"])
         assert report["seen"]["markings"]
         return "same"
     assert not report["complete"]

@@ -245,8 +245,10 @@ def look(
         found = unfolded.look(opened, asked, found, limits, own_options or options, why_not)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
-    # What is asked of a cell as its programs run needs the graph.
-    limits = replace(limits, sweeps=False) if cell is not None else limits
+    if cell is not None:
+        # What is asked of its programs needs the graph: markings are forgotten where there is no memory for it only.
+        limits = replace(limits, sweeps=False if limits.sweeps is False else None)
+        options = replace(options, needs_graph=True)
     control: Control | None = None
     if cell is not None and asks_control:
         options.stage("exploring the cell as its programs run ...")

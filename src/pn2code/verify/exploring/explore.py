@@ -102,6 +102,7 @@ class ExploreOptions:
         counts: with `turns`, the places whose tokens are counted up to a limit only; None: there are none.
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
+        needs_graph: where markings had to be forgotten, since there was no memory for all, not all was done.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         ending: of a swarm: the numbers of the questions of which a decided one ends it.
         shuffle: depth first, the order of successors: 0 as they are found, 1 the other way round, others by chance.
@@ -129,6 +130,7 @@ class ExploreOptions:
     counts: Counts | None = None
     bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
+    needs_graph: bool = False
     covering: bool = False
     ending: tuple[int, ...] = ()
     shuffle: int = 0
@@ -171,7 +173,8 @@ def explore(
         net, storage, open_places, is_limited=is_limited, time_alone=time_alone
     ) as search:
         found = _explored(net, storage, limits, d, options, search if options.covering else None)
-        if found is not None and limits.sweeps is None and sweep.may_help(found):
+        may_sweep = limits.sweeps is None and options.turns is None and options.counts is None
+        if found is not None and may_sweep and sweep.may_help(found):
             found = _swept_after(net, storage, limits, d, options, found)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not options.covering or not is_open:
@@ -200,7 +203,8 @@ def _swept_after(
             return first
         options.stage("exploring once more, forgetting markings that cannot come back ...")
         again = _explored(net, storage, replace(limits, sweeps=True), unheard, options, None)
-        return first if again is None else sweep.joined(first, again)
+        if again is not None:
+            return sweep.joined(first, again, needs_graph=options.needs_graph)
     return first
 
 

@@ -60,14 +60,21 @@ def may_help(found: Exploration) -> bool:
     return found.why == "memory" and not found.seen.markings and is_plain
 
 
-def joined(first: Exploration, again: Exploration) -> Exploration:
+def joined(first: Exploration, again: Exploration, *, needs_graph: bool = False) -> Exploration:
     """What an exploration within the limit of memory has found, and one that has forgotten markings after it.
 
     The second one counts where it has come to an end; what a part of the graph has decided stays.
+
+    Args:
+        first: what ended for want of memory.
+        again: what came after it.
+        needs_graph: whether there still was no memory for all that was wanted, then.
     """
     answers = tuple(
         a if a["answer"] != "unknown" else b
         for a, b in zip(first.answers, again.answers, strict=True)
     )
+    if again.complete and needs_graph:
+        again = replace(again, complete=False, why=first.why)
     is_known = again.seen.markings or again.why in _KNOWN_ENDS
     return replace(again if is_known else first, answers=answers)
