@@ -22,6 +22,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.answers.path import steps
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.progress import Progress
 
 pytestmark = pytest.mark.cc
@@ -138,6 +139,20 @@ def test_of_a_line_of_parts_few_markings_are_known_at_a_time(
     assert found["peak_mib"] < 64  # its own, not that of the process that has started it
     (trace,) = found["traces"]
     assert trace["steps"] == 6 + 6 + 6 + 3
+    assert not found["sweep"]["runs_lost"]
+
+
+def test_without_room_for_the_file_there_are_answers_and_no_runs(
+    explorers: Explorers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = explorers.build(flat(PARTS), Sizes.start(flat(PARTS), {}), "lost")
+    options = table(tmp_path, "0 -1\n")
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "missing"))
+    found = explorers.run(folder, *options, "--trace-to", tmp_path / "dead-").report
+    assert found["complete"]
+    assert found["dead_count"] == 1
+    assert found["traces"] == []
+    assert found["sweep"]["runs_lost"]
 
 
 COUNTED = """

@@ -19,7 +19,7 @@ from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.result_rows import row
 from pn2code.verify.report.sweep_text import known
 
-SWEPT = {"layers": 4, "most_known": 25, "forgettings": 1}
+SWEPT = {"layers": 4, "most_known": 25, "forgettings": 1, "runs_lost": False}
 ANSWERS = ("yes", "no", "unknown")
 
 
@@ -93,6 +93,8 @@ def test_it_says_how_many_markings_were_known(net: FlatNet) -> None:
         "25 markings (25%) were known at a time, in the order of 4 values of a measure that never becomes smaller "
         "(A + 2 * B); what needs the graph is not known"
     )
+    lost = replace(own, sweep={**SWEPT, "runs_lost": True})
+    assert "`--spill DIR`" in known(lost)
     long = replace(own, measure=" + ".join(f"Place{i}" for i in range(40)))
     assert known(long).count("Place") < 20
     assert dict(complete(own)) == {

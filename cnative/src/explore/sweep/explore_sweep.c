@@ -628,6 +628,7 @@ void ex_sweep_json(const ex_run_t *run, FILE *out)
 {
     const ex_sweep_t *const sweep = run->sweep;
     (void)fprintf(out,
-                  ",\n \"sweep\": {\"layers\": %" PRIu64 ", \"most_known\": %" PRIu64 ", \"forgettings\": %" PRIu64 "}",
-                  sweep->layers, sweep->most_live, sweep->forgettings);
+                  ",\n \"sweep\": {\"layers\": %" PRIu64 ", \"most_known\": %" PRIu64 ", \"forgettings\": %" PRIu64
+                  ", \"runs_lost\": %s}",
+                  sweep->layers, sweep->most_live, sweep->forgettings, sweep->log.is_lost ? "true" : "false");
 }

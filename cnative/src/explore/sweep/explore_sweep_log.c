@@ -26,6 +26,7 @@ static void close_log(ex_sweep_log_t *log)
     if (log->file != NULL) {
         (void)fclose(log->file);
         log->file = NULL;
+        log->is_lost = true;
     }
 }
 
@@ -35,14 +36,14 @@ void ex_sweep_log_open(ex_sweep_log_t *log, const char *folder, uint32_t length)
     const int size = snprintf(path, sizeof path, "%s/sweep-XXXXXX", folder);
     *log = (ex_sweep_log_t){ .length = length };
     const int file = ((size > 0) && ((size_t)size < sizeof path)) ? mkstemp(path) : -1;
-    if (file < 0) {
-        return;
+    if (file >= 0) {
+        (void)unlink(path);
+        log->file = fdopen(file, "w+b");
     }
-    (void)unlink(path);
-    log->file = fdopen(file, "w+b");
-    if (log->file == NULL) {
+    if ((log->file == NULL) && (file >= 0)) {
         (void)close(file);
     }
+    log->is_lost = log->file == NULL;
 }
 
 void ex_sweep_log_add(ex_sweep_log_t *log, const ex_key_t *key, uint64_t parent)

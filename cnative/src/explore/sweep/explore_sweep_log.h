@@ -11,6 +11,7 @@
 
 typedef struct ex_sweep_log {
     FILE *file;      /* NULL: there is none */
+    bool is_lost;    /* it could not be had, or not be written */
     uint32_t length; /* bytes of a key */
     uint64_t count;  /* entries */
 } ex_sweep_log_t;

@@ -209,7 +209,8 @@ class Exploration:
         unfolded: what the unfolded net tells where a limit has ended the exploration; None: it was not looked at.
         swarm: how many searches of a swarm have seen what (`swarm.merging`); None: it was one exploration.
         sweep: of an exploration that has forgotten markings (`verify.exploring.progress`): `layers`, how many values
-            the measure had; `most_known`, how many markings were known at a time; `forgettings`; None: of another one.
+            the measure had; `most_known`, how many markings were known at a time; `forgettings`; `runs_lost`; None: it
+            was another one.
         measure: for people, of `sweep`.
         told: whether the explorer has told what it has seen; else how many markings that were is all that is known.
     """

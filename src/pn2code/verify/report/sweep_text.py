@@ -16,7 +16,12 @@ def known(found: Exploration) -> str:
     if len(measure) > _MOST_TEXT:
         measure = f"{measure[:_MOST_TEXT].rsplit(' ', 1)[0]} ..."
     values = "one value" if layers == 1 else f"{layers:,} values"
+    lost = (
+        "; there was no room for the file from which runs are made (`--spill DIR` says where)"
+        if found.sweep["runs_lost"]
+        else ""
+    )
     return (
         f"{most:,} markings ({part:.0%}) were known at a time, in the order of {values} of a measure that never "
-        f"becomes smaller ({measure}); what needs the graph is not known"
+        f"becomes smaller ({measure}); what needs the graph is not known{lost}"
     )
