@@ -14,7 +14,7 @@ from helpers.explored import Explorers
 from helpers.questions import Lts, ask
 from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.controller import control
+from pn2code.verify.controller import all_orders, control, setting
 from pn2code.verify.controller.control_types import Check, Plan
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
@@ -95,7 +95,7 @@ def test_the_same_is_found(
 ) -> None:
     partition, _ = cell(tmp_path, net)
     stems: list[str] = []
-    explore = control.explore
+    explore = setting.explore
 
     def noted(*given: object) -> object:
         stems.append(given[-1].stem)  # type: ignore[attr-defined]
@@ -108,8 +108,8 @@ def test_the_same_is_found(
         assert found is not None, [i.message for i in d]
         return [replace(c, evidence=()) for c in found.checks]
 
-    monkeypatch.setattr(control, "explore", noted)
+    monkeypatch.setattr(setting, "explore", noted)
     at_once = looked()
     assert stems == explored
-    monkeypatch.setattr(control, "parted", lambda rows, last: (rows[: len(rows) - last], ()))
+    monkeypatch.setattr(all_orders, "parted", lambda rows, last: (rows[: len(rows) - last], ()))
     assert looked() == at_once and stems == [*explored, "cell", "orders"]

@@ -44,10 +44,12 @@ def test_a_coloured_place_tells_who_is_there_and_why(tmp_path: Path) -> None:
     assert proposal["while_with"] == ["#1 = 1 and #2 = 2", "#1 = 2 and #2 = 2"]
     done = told.command()
     assert (
-        "taken by `Top.Supervisor.Send1` if `n = 2`, `Top.Supervisor.Send2` if `n = 2`"
+        "taken by `Top.Supervisor.Send1` if `n = 2` and `Top.Supervisor.Send2` if `n = 2`"
         in done.stdout
     )
     assert "if CONDITION then 1`() else empty" in done.stdout
+    assert proposal["refused"] is None
+    assert "`generate` objects to nothing in its supervisor" in done.stdout
 
 
 def test_with_the_place_that_is_proposed_arms_keep_apart(tmp_path: Path) -> None:
@@ -150,10 +152,15 @@ def test_a_place_that_is_there_and_serves_only_one_of_them(tmp_path: Path) -> No
     net = NET.replace("      TAKE\n", "      in Free\n", 1)
     net = net.replace("      GIVE\n", "      out Free\n", 1)
     net = net.replace("out Busy2 : n", "out Busy2 : 1`n")
-    cell = meeting_cell(tmp_path / "cell", guarded=False, net=net)
+    toml = TOML.replace('order = "documented"\n', "")
+    cell = meeting_cell(tmp_path / "cell", guarded=False, net=net, toml=toml)
     told = tell(cell, tmp_path)
     (proposal,) = told.layout["proposals"]
     assert proposal["works"], proposal
+    # Whoever draws it is not surprised: nothing was said of that.
+    sends = "`Top.Supervisor.Send1` or `Top.Supervisor.Send2` comes first matters"
+    assert sends in proposal["refused"] and proposal["refused"].startswith("confluence: ")
+    assert 'if that may be so, write `order = "documented"`' in told.command().stdout
     assert (proposal["place"], proposal["place_is_there"]) == ("Top.Supervisor.Free", True)
     assert proposal["takes"] == ["Top.Supervisor.Send2"]
     assert proposal["gives"] == ["Top.Supervisor.Got2"]

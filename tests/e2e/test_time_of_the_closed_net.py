@@ -14,7 +14,7 @@ from helpers.small_cell import NET, TOML, write
 from pn2code.base.deadline import Deadline
 from pn2code.cli import verify as command
 from pn2code.cli.main import app
-from pn2code.verify.controller import control
+from pn2code.verify.controller import setting
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -28,7 +28,7 @@ def verified_late(
 ) -> dict[str, Any]:
     """The time is over as soon as so many parts of the cell as it runs were explored."""
     explored_parts: list[object] = []
-    left, explore = Deadline.left.fget, control.explore
+    left, explore = Deadline.left.fget, setting.explore
     assert left is not None
 
     def explored(*args: Any) -> Any:
@@ -39,7 +39,7 @@ def verified_late(
     monkeypatch.setattr(
         Deadline, "left", property(lambda d: -1.0 if len(explored_parts) >= parts else left(d))
     )
-    monkeypatch.setattr(control, "explore", explored)
+    monkeypatch.setattr(setting, "explore", explored)
     monkeypatch.setattr(command, "COUNTS_FROM", None)
     monkeypatch.setattr(command, "TURNS_FROM", 20)
     return verified(folder, net, asked)
@@ -75,7 +75,7 @@ def test_a_failure_without_a_run_says_how_to_get_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The explorer says what it has seen when the time is over, and has none to write the way there."""
-    explore = control.explore
+    explore = setting.explore
 
     def late(*args: Any) -> Any:
         found = explore(*args)
@@ -83,7 +83,7 @@ def test_a_failure_without_a_run_says_how_to_get_one(
         answers = (failed, *found.answers[1:])
         return replace(found, complete=False, why="seconds", answers=answers)
 
-    monkeypatch.setattr(control, "explore", late)
+    monkeypatch.setattr(setting, "explore", late)
     (answer,) = verified(tmp_path, NET, "never tokens(Top'flag) > 7")["properties"]
     assert (answer["answer"], answer["evidence"], answer["rests_on"]) == ("no", None, "marking")
     assert answer["no_run"] == (
@@ -102,7 +102,7 @@ def test_runs_are_looked_for_where_the_time_of_the_exploration_is_over(
     net = "".join(x for x in net.splitlines(keepends=True) if " data" not in x)
     channel = TOML[TOML.index("[[channel]]") : TOML.index('[[channel]]\nplace = "flag"')]
     toml = TOML.replace(channel, "").replace('moveJoint = { command = "move_joint" }\n', "")
-    monkeypatch.setattr(control, "CELL_PART", 0.0)
+    monkeypatch.setattr(setting, "CELL_PART", 0.0)
     asked = "never tokens(Finished) = 1"
     (answer,) = verified(tmp_path, net, asked, toml)["properties"]
     assert (answer["answer"], answer["about"]) == ("no", "cell")

@@ -16,7 +16,7 @@ from helpers.netbuilder import cpn
 from helpers.thorough import THOROUGH
 from pn2code.cli import verify as command
 from pn2code.cli.main import app
-from pn2code.verify.controller import by_turns, control
+from pn2code.verify.controller import by_turns, setting
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -105,7 +105,7 @@ def test_runs_of_turns_have_files_of_their_own(
     monkeypatch.setattr(command, "TURNS_FROM", 200)
     monkeypatch.setattr(command, "COUNTS_FROM", None)
     files: dict[str, set[str]] = {"whole": set(), "turns": set()}
-    for name, module in (("whole", control), ("turns", by_turns)):
+    for name, module in (("whole", setting), ("turns", by_turns)):
 
         def noted(*given: Any, name: str = name, explore: Any = module.explore) -> Any:
             seen = explore(*given)

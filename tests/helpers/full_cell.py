@@ -252,6 +252,7 @@ at = [{ x = 1.5, z = 0.5 }]
 grips = [{ z = 0.075, roll = 180.0 }]
 grip_tolerance = 0.01
 grip_angle_deg = 7.0
+contact_way = 0.2
 mass = 1.5
 
 [parts.rod]

@@ -17,24 +17,28 @@ from pn2code.geometry.shown import Shown
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Command, MoveJoint, Pose
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import Led, LedContact, LedContacts
 from pn2code.robot.monitor import Monitor, Verdict
 from pn2code.robot.part import Part
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
-from pn2code.robot.transforms import Array, inverse, matrix_of
+from pn2code.robot.transforms import inverse, matrix_of
 
 TOP = 0.15
 """m: the height of a box."""
 
 
-def cell_of(row: tuple[float, ...] = (1.4, 1.2, 1.0), **changes: object) -> RobotCell:
-    """Boxes at these places, on the floor; keys of the robot that are otherwise."""
+def cell_of(
+    row: tuple[float, ...] = (1.4, 1.2, 1.0), way: float | None = None, **changes: object
+) -> RobotCell:
+    """Boxes at these places, on the floor; their `contact_way`; keys of the robot that are otherwise."""
     data = tomllib.loads(TOML)
     data["parts"]["box"]["size"] = [0.1, 0.1, TOP]
     data["parts"]["box"]["at"] = [{"x": x, "y": -1.1, "z": TOP / 2} for x in row]
     data["robots"]["robot"] |= changes
+    if way is not None:
+        data["parts"]["box"]["contact_way"] = way
     d = Diagnostics()
     found = load(data, Path(), lambda *_: Origin("cell.toml"), d)
     assert found is not None, [e.message for e in d.errors]
@@ -69,29 +73,30 @@ class Lines:
         assert leg.path is not None, leg.fault
         return leg
 
-    def leads_to(self, leg: Leg, contact: LedContact) -> bool:
-        """Whether a contact is one to which the line leads, or from which it comes."""
+    def led_to(self, leg: Leg, at: float, contact: LedContact) -> Led:
+        """What a line has to do with a contact, at a fraction of its way."""
         assert leg.path is not None
         ends = MoveEnds.of(self.cell.robot("robot"), "", leg.path)
         present = self.parts.present
         touching = present.get(contact.part), present.get(contact.other)
         homes = {r.name: np.array(r.home) for r in self.cell.moving}
-        return self._led.is_led(contact, ends, touching, homes.__getitem__)
+        return self._led.of_move(contact, ends, touching, homes.__getitem__, (at, at))
 
-    def seen(self, leg: Leg, *places: Array) -> list[Verdict]:
-        """What a run sees where the robot stands on its line."""
+    def seen(self, leg: Leg, *fractions: float) -> list[Verdict]:
+        """What a run sees where the robot is on its line."""
+        assert leg.path is not None
         for part in self.parts.present.values():
             self.backend.set_part(part)
         homes = {r.name: r.home for r in self.cell.moving}
         monitor = Monitor(self.cell, self.backend)
         found = [
             monitor.check(
-                float(i),
-                homes | {"robot": q},
+                at,
+                homes | {"robot": leg.path.on_way(np.array([at]))[0]},
                 kinds={"robot": leg.kind},
-                leads_to=partial(self.leads_to, leg),
+                led_to=partial(self.led_to, leg, at),
             )
-            for i, q in enumerate(places)
+            for at in fractions
         ]
         for part in self.parts.present.values():
             self.backend.remove_part(part.name)

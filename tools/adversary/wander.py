@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 from contextlib import ExitStack
@@ -190,6 +191,10 @@ class _Wanderer(Engine):
             times.append(wake)
         if not times:
             raise CellStoppedError(stuck(self.robots, self.now))
+        # The supervisor stops for a late answer as soon as it is late, if it looks then.
+        late = math.nextafter(self._answer_due, math.inf)
+        if late > self.now and not self._finished and not self._is_held(SUPERVISOR):
+            times.append(late)
         return max(self.now, min(times))
 
 

@@ -12,7 +12,7 @@ from random import Random
 import pytest
 from tools.combinations.asked import KNOWN, Answers, Case
 from tools.combinations.runs import contradicted
-from tools.combinations.subjects import ANYHOW, make, questions
+from tools.combinations.subjects import ANYHOW, PARTS, make, of_parts, questions
 from tools.combinations.ways import WHOLE, Way, ways
 
 from pn2code.diagnostics import Diagnostics
@@ -75,7 +75,8 @@ def _judged(family: str, seed: int, folder: Path, number: int, runs: int) -> Ver
     verdict, r = Verdict(), Random(f"{family} {seed}")
     subject = make(family, seed, folder)
     opened = read(subject.path, {}, Diagnostics())
-    texts = [] if opened is None else questions(r, opened.flat)
+    about = of_parts if family == PARTS else questions
+    texts = [] if opened is None else about(r, opened.flat)
     own = [c.text for c in subject.cell.claims] if subject.cell is not None else []
     case = None if opened is None else Case.read(subject.path, [*own, *texts])
     if case is None or not _begins(case):

@@ -19,6 +19,7 @@ from tools.combinations import nets
 from tools.combinations.shapes import shape
 from tools.register_cells.cells import random_cell as register_cell
 
+from helpers import equal_parts
 from helpers.netbuilder import cpn
 from helpers.random_graphs import numbered
 from helpers.random_properties import Author
@@ -26,12 +27,15 @@ from helpers.random_references import referring
 from helpers.random_unions import union
 from pn2code.net.flat import FlatNet
 
+PARTS = "parts"
+"""Equal parts, of which one may be odd."""
 NETS: Mapping[str, Callable[[int], str]] = {
     "small": lambda seed: nets.small(Random(seed)),
     "anything": numbered,
     "styles": lambda seed: union(seed, 1).text(0),
     "references": lambda seed: referring(seed, 1).text(0),
     "closed": lambda seed: shape(Random(seed)).net,
+    PARTS: lambda seed: equal_parts.family(Random(seed)),
 }
 """Families of nets without a cell, by their seeds."""
 CELLS: Mapping[str, Callable[[Random], Cell]] = {
@@ -70,6 +74,53 @@ def make(family: str, seed: int, folder: Path) -> Subject:
     cell = CELLS[family](Random(seed))
     bed.write(cell, folder)
     return Subject(folder, cell)
+
+
+def of_parts(r: Random, net: FlatNet) -> list[str]:
+    """About all parts in the same way, so that they can be exchanged; and some that cannot be asked then."""
+
+    def alike() -> list[str]:
+        one = r.choice(net.place_instances)
+        return [
+            f"{p.page}'{p.name} {p.number}"
+            for p in net.place_instances
+            if (p.page, p.name) == (one.page, one.name)
+        ]
+
+    def enabled() -> list[str]:
+        one = r.choice(net.transitions)
+        return [
+            f"enabled({t.page}'{t.short} {t.instance_number})"
+            for t in net.transitions
+            if (t.page, t.short) == (one.page, one.short)
+        ]
+
+    def same(of: list[str], word: str, what: str) -> str:
+        return f" {word} ".join(what.format(p) for p in of)
+
+    kinds = (
+        lambda: f"mutex {', '.join([*alike(), *alike()])}",
+        lambda: f"never tokens({', '.join(alike())}) > {r.randint(0, 2)}",
+        lambda: f"never {{ {same(alike(), '+', 'length (Mark.{})')} > {r.randint(0, 2)} }}",
+        lambda: f"reachable {same(alike(), '&&', 'tokens({}) = 1')}",
+        lambda: f"reachable {{ {same(alike(), 'andalso', 'length (Mark.{}) = 1')} }}",
+        lambda: f"always {same(alike(), '||', 'tokens({}) = 0')}",
+        lambda: f"always {same(alike(), '&&', 'tokens({}) <= 1')}",
+        lambda: f"reachable {' && '.join(enabled())}",
+        lambda: f"deadlock free except {same(alike(), '&&', 'tokens({}) = 0')}",
+        lambda: "deadlock free",
+        lambda: f"ctl AG {same(alike(), '&&', 'tokens({}) <= 1')}",
+        lambda: f"ctl EF {same(alike(), '&&', 'tokens({}) = 1')}",
+        lambda: "ctl AF dead",
+        lambda: f"ctl AG EF ({same(alike(), '&&', 'tokens({}) = 0')})",
+        lambda: f"ctl {r.choice(['AF', 'EG', 'AG'])} ({same(alike(), '||', 'tokens({}) = 1')})",
+        lambda: (
+            f"ctl AG (({same(alike(), '||', 'tokens({}) = 1')}) -> AF ({same(alike(), '&&', 'tokens({}) = 0')}))"
+        ),
+        lambda: f"ctl {same(alike(), '&&', 'AF (tokens({}) = 1)')}",
+        lambda: f"ctl E[({same(alike(), '&&', 'tokens({}) <= 1')}) U ({' && '.join(enabled())})]",
+    )
+    return list(dict.fromkeys(r.choice(kinds)() for _ in range(QUESTIONS // 2)))
 
 
 def questions(r: Random, net: FlatNet) -> list[str]:

@@ -14,6 +14,8 @@
                                      too many states, and the answers compared;
                                      --moving: cells of a belt, a turntable, a lift, a door, and an arm or an operator,
                                      with little room between what they sweep, which need not wait for each other
+                                     --carrying: cells of two arms that both carry boxes, in half of them through a
+                                     zone where people may be
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ import argparse
 import resource
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -36,6 +38,7 @@ from tools.geometry.pairs import WORKLOADS, measured
 from tools.geometry.unguarded import unguarded
 from tools.geometry.wander import wander
 
+from helpers.carrying_pairs import carrying_pair
 from helpers.changing_cells import changing_cell
 from helpers.machine_cells import machine_cell
 from helpers.moving_cells import moving_cell
@@ -227,14 +230,14 @@ def random_cells(
     is_run: bool,
     step: int = 1,
     large: bool = False,
-    moving: bool = False,
+    own: Callable[[Random], tuple[str, str]] | None = None,
 ) -> int:
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
     wrong = 0
     for done, number in enumerate(range(seed, seed + step * count, step), 1):
         times = [processor()]
-        net, toml = moving_cell(Random(number)) if moving else random_cell(number)
+        net, toml = random_cell(number) if own is None else own(Random(number))
         cell = folder / str(number)
         cell.mkdir()
         (cell / "cell.cpn").write_bytes(cpn(net))
@@ -262,7 +265,7 @@ def random_cells(
                     f"cell {number}: {found.answer}, {as_large.answer} as a large cell; {met}",
                     flush=True,
                 )
-        elif number % 4 == 0 and not moving:
+        elif number % 4 == 0 and own is None:
             robot = arms.robots[-1].name
             answer, there = placed(cell, robot, folder / f"{number}.place", number, walks)
             key = (f"{answer} to another place", "something" if there else "nothing")
@@ -295,12 +298,14 @@ def main() -> int:
         "--large", action="store_true", help="random cells also as if they had too many states"
     )
     parser.add_argument("--moving", action="store_true", help="random cells of moving devices")
+    parser.add_argument("--carrying", action="store_true", help="of two arms that both carry parts")
     parser.add_argument("--pictures", type=Path, metavar="DIR")
     options = parser.parse_args()
     if options.pairs:
         return speeds(options.pairs, options.jobs)
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         if options.cells:
+            own = moving_cell if options.moving else carrying_pair if options.carrying else None
             return random_cells(
                 Path(name),
                 options.cells,
@@ -309,7 +314,7 @@ def main() -> int:
                 is_run=options.runs,
                 step=options.step,
                 large=options.large,
-                moving=options.moving,
+                own=own,
             )
         if options.pictures:
             return pictures(Path(name), options.pictures)

@@ -22,7 +22,7 @@ from pn2code.robot.clamps import closed_on, closing, holding, nearest, on_nothin
 from pn2code.robot.commands import Command, Move, ToolAction
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import Led, LedContact, LedContacts
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.part import PartFault
@@ -153,12 +153,13 @@ def _walk(
 
     led = LedContacts(cell)
 
-    def leads_to(contact: LedContact) -> bool:
+    def led_to(contact: LedContact) -> Led:
         present = parts.parts.present
         own = next(a for a in arms.values() if a.executor.robot.name == contact.robot)
         touching = present.get(contact.part), present.get(contact.other)
         joints = {a.executor.robot.name: a.joints() for a in arms.values()}
-        return led.is_led(contact, own.ends, touching, joints.__getitem__)
+        at = own.part, own.part
+        return led.of_move(contact, own.ends, touching, joints.__getitem__, at)
 
     eyes = Eyes(graph, cell)
     state = 0
@@ -227,7 +228,7 @@ def _walk(
             kinds={a.executor.robot.name: a.kind for a in arms.values() if a.kind is not None},
             calm=[a.executor.robot.name for a in arms.values() if not a.turning()],
             turning=parts.parts.turning,
-            leads_to=leads_to,
+            led_to=led_to,
         )
         if found.fault is not None:
             return found.fault.message

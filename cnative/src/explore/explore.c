@@ -58,6 +58,7 @@ static void print_help(void)
         "  --reduce time       states that differ only in how late it is are one\n"
         "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
         "  --elements FILE     the table of binding elements that these two need\n"
+        "  --instances FILE    instead of it, for symmetry: which parts of the net can be exchanged\n"
         "  --dependency FILE   instead of it, for partial-order: which transitions depend on which\n"
         "  --turns FILE        the table by which programs take turns: each run is seen in one of its orders\n"
         "  --counts FILE       the table of places whose tokens are counted up to a limit only; needs --turns\n"
@@ -184,6 +185,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--approximate") == 0) && read_approximation(value, options))
            || ((strcmp(option, "--reduce") == 0) && read_reduction(value, options))
            || ((strcmp(option, "--elements") == 0) && read_text(value, &options->elements))
+           || ((strcmp(option, "--instances") == 0) && read_text(value, &options->instances))
            || ((strcmp(option, "--dependency") == 0) && read_text(value, &options->dependency))
            || ((strcmp(option, "--turns") == 0) && read_text(value, &options->turns))
            || ((strcmp(option, "--counts") == 0) && read_text(value, &options->counts))

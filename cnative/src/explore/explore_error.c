@@ -137,7 +137,12 @@ static bool follow(ex_run_t *run, const ex_graph_t *graph, uint32_t node, ex_rai
         raised->steps = ex_write_run(run, graph, node, raised->path, "error");
     }
     const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric && (raised->steps >= 0);
-    if (is_symmetric) { /* the trace does not end in the state itself */
+    const bool is_exchanged = is_symmetric && (worker->exchange != NULL);
+    if (is_exchanged) { /* the trace does not end in the state itself */
+        clear(run);
+        (void)(ex_store_fetch(&run->store, graph->slot[node], &key) && ex_load(worker, &key)
+               && ex_instances_restore(worker) && (ex_next_markings(worker, ignore_marking, NULL) == EX_FAILED));
+    } else if (is_symmetric) { /* nor here, but the run is still where it ends */
         (void)ex_all_successors(worker, ignore_marking, NULL);
     } else {
         clear(run);

@@ -40,6 +40,7 @@ typedef struct ex_options {
     bool is_stubborn; /* reductions: see explore_reduce.h */
     bool is_symmetric;
     const char *elements;    /* file: the table that these need */
+    const char *instances;   /* file: the parts that symmetry exchanges; NULL: it is of colours */
     const char *dependency;  /* file: the table that partial order needs where there is no such table */
     const char *turns;       /* file: the table by which programs take turns; NULL: they do not */
     const char *counts;      /* file: the places whose tokens are counted up to a limit only; NULL: there are none */

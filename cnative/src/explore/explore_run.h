@@ -31,6 +31,7 @@ typedef struct ex_worker {
     struct ex_stubborn *stubborn;     /* of explore_stubborn.c */
     struct ex_persistent *persistent; /* of explore_dependency.c */
     struct ex_symmetry *symmetry;     /* of explore_symmetry.c */
+    struct ex_exchange *exchange;     /* of explore_instances.c */
     struct ex_turns *turns;           /* of explore_turns.c */
     struct ex_early *early;           /* of explore_query_early.c */
     struct ex_local *local;           /* of explore_local.c; NULL: nothing is remembered */

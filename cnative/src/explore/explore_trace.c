@@ -6,7 +6,7 @@
 
 #include "graph/explore_graph.h"
 #include "search/explore_successors.h"
-#include "search/explore_reduce.h"
+#include "search/explore_instances.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -54,7 +54,12 @@ static bool write_step(void *user, uint32_t transition, const void *binding, con
     }
     search->is_found = true;
     const pn_time_t now = time_of(search->worker, search->before + search->worker->elapsed);
-    pn_trace_model_occurrence(search->trace, now, pn_net.real_time, &pn_net.transition[transition], binding);
+    const bool is_exchanged = search->worker->exchange != NULL;
+    const uint32_t real = is_exchanged ? ex_instances_real(search->worker, transition) : transition;
+    pn_trace_model_occurrence(search->trace, now, pn_net.real_time, &pn_net.transition[real], binding);
+    if (is_exchanged) {
+        ex_instances_follow(search->worker);
+    }
     return false;
 }
 
@@ -77,7 +82,7 @@ static uint32_t *path_to(const ex_graph_t *graph, uint32_t node, uint64_t *lengt
     return on_path;
 }
 
-/* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other -- */
+/* --- with symmetries of colours: the states of the way stand for others, and a run goes through one of them after the other -- */
 
 typedef struct walk {
     ex_worker_t *worker;
@@ -190,7 +195,11 @@ int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on
         free(line);
         return -1;
     }
-    const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric;
+    const bool is_exchanged = worker->exchange != NULL;
+    const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric && !is_exchanged;
+    if (is_exchanged) {
+        ex_instances_start(worker);
+    }
     if (is_symmetric) {
         is_fine = write_walk(run, graph, on_path, length, &trace);
     }

@@ -148,6 +148,15 @@ PART = Section(
             above=True,
             high=180.0,
         ),
+        Key(
+            "contact_way",
+            "number",
+            "How far before the end of a line that leads to a part, or behind the beginning of one that comes from it, "
+            "a tool may touch it, and what it is put on ([robots.md](robots.md#parts-that-are-carried)); without it as "
+            "far as the box around it is long from corner to corner.",
+            unit="m",
+            low=0.0,
+        ),
     ),
     by="kind",
 )

@@ -198,6 +198,7 @@ class Proposal:
         works: whether the pairs keep apart with it, and the cell still comes to its end; says: what was found.
         is_there: the place is there, and `takes` and `gives` are those that have to use it as well.
         served: places that are there and keep some of the transitions apart.
+        refused: what `generate` would say of the supervisor with it, and does not say without; "": nothing.
     """
 
     robots: tuple[str, ...]
@@ -214,6 +215,7 @@ class Proposal:
     says: str = ""
     is_there: bool = False
     served: tuple[Served, ...] = ()
+    refused: str = ""
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -243,6 +245,7 @@ class Proposal:
             ],
             "works": self.works,
             "says": self.says,
+            "refused": self.refused or None,
         }
 
 

@@ -26,6 +26,7 @@ from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_
 from pn2code.geometry.large import MOST_OF_PART, answer_of, sought_in
 from pn2code.geometry.look import Look, Options
 from pn2code.geometry.progress import LATE
+from pn2code.geometry.supervised import Supervised
 from pn2code.geometry.words import reason
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell
@@ -144,7 +145,16 @@ def examine(
 
     stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
     folder.mkdir(parents=True, exist_ok=True)
-    options = Options(folder, stem, opened.initial, explore, stage, limits.threads, say)
+    options = Options(
+        folder,
+        stem,
+        opened.initial,
+        explore,
+        stage,
+        limits.threads,
+        say,
+        Supervised(partition, config),
+    )
     found = []
     for name, cell in cells:
         if len(cells) > 1:

@@ -54,7 +54,7 @@ class Follower:
         self._speed = float(np.hypot(np.hypot(path.line.length, path.line.angle), path.swivel))
         self._steep = _steepness(kinematics)
         self._shortest = STRAIGHT if path.is_straight else SHORTEST
-        self._planned = path.way(path.times)
+        self._planned = path.fractions
         self._known: dict[float, int] = {}
         self._samples = _Samples()
 

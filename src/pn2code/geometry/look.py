@@ -30,12 +30,13 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
-from pn2code.geometry.zones import Explore, Zones, sides_of
+from pn2code.geometry.zones import Explore, Refused, Zones, sides_of
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
+from pn2code.robot.led_contacts import EARLY
 from pn2code.robot.motion_checks import other_branches
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
 from pn2code.robot.transforms import pose_of
 
 _NOWHERE = Clearance("robots", "", "", "", 0.0, None, (0.0, 0.0, 0.0))
@@ -55,6 +56,7 @@ class Options:
         explore: explores a changed cell; None: no proposals.
         stage: hears in words what is done; say: and how far it is.
         jobs: processes that sweep.
+        refused: what `generate` would say of a changed cell.
     """
 
     folder: Path
@@ -64,6 +66,7 @@ class Options:
     stage: Callable[[str], None] = lambda _text: None
     jobs: int = 1
     say: Say = silent
+    refused: Refused = lambda _changed: ""
 
 
 class Look:
@@ -97,7 +100,9 @@ class Look:
         zones = None
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
-            zones = Zones(found, self.comparison, explore).proposals(seen.arms, touching)
+            zones = Zones(found, self.comparison, explore, self.options.refused).proposals(
+                seen.arms, touching
+            )
         return self.layout_of(found, seen.moves, seen.pairs, began, tuple(zones or ()))
 
     def so_far(self) -> Layout:
@@ -546,7 +551,8 @@ def certain(apart: Apart) -> float | None:
 def _most_in(apart: Apart) -> float:
     """The least distance (m) that the links which touch can have anywhere on the way."""
     assert apart.where is not None
-    permitted = apart.nearest - apart.where.distance
+    # Nearer to where the move leads they may touch, and may be deeper by so much than here.
+    permitted = PART_CONTACT if apart.where.is_early else apart.nearest - apart.where.distance
     return min(apart.least - permitted, apart.where.distance)
 
 
@@ -559,6 +565,8 @@ def touch_in_words(apart: Apart) -> str:
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
     least = "" if apart.is_whole else "at least "
     text = f"{shown(gap.a)} and {shown(gap.b)} overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    if gap.is_early:
+        text += EARLY
     if not apart.is_whole:
         return f"{text}; where it is deepest was not searched for"
     if certain(apart) is None:

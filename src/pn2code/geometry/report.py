@@ -8,7 +8,10 @@ from collections.abc import Collection, Iterator, Sequence
 from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal
 from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
+from pn2code.geometry.supervised import UNKNOWN
 from pn2code.geometry.sweeps import RESOLUTION
+from pn2code.geometry.words import listed
+from pn2code.verify.controller.control_types import CONFLUENT
 
 MOST_MOVES = 12
 """Moves of a table that is not full."""
@@ -194,26 +197,32 @@ _FROM_START = (
     "elsewhere, or send it away first and wait for its answer"
 )
 _PUT_THERE = "where it has been put: nobody may come there until it is taken away"
+NOT_TRIED = "the properties of the cell: ask `pn2code verify` when the arcs are drawn"
+"""Of a proposal."""
 _LATER = "where a command has left it: bring it out (such as by `move_home`) before it answers"
 
 
 def _proposed(p: Proposal) -> Iterator[str]:
     yield ""
-    zone = " and ".join(f"`{t}`" for t in p.transitions)
+    zone = listed(f"`{t}`" for t in p.transitions)
     if p.rests:
         come = "come" if len(p.transitions) > 1 else "comes"
-        resting = " and ".join(dict.fromkeys(x.thing or x.robot for x in p.rests))
-        rest_there = f"{resting} rest{'' if ' and ' in resting else 's'}"
-        yield f"{zone} {come} to where {rest_there}" if zone else f"{resting} rest where they touch"
+        who = [*dict.fromkeys(x.thing or x.robot for x in p.rests)]
+        resting, verb = listed(who), "rest" if len(who) > 1 else "rests"
+        yield (
+            f"{zone} {come} to where {resting} {verb}"
+            if zone
+            else f"{resting} rest where they touch"
+        )
         for rest in p.rests:
             later = _PUT_THERE if rest.thing else _LATER
             where = _FROM_START if rest.from_start else later
             yield f"  {rest.thing or rest.robot} rests at {rest.at}, {where}"
     else:
-        whose = f" ({' and '.join(p.robots)})" if len(p.robots) > 1 else ""
+        whose = f" ({listed(p.robots)})" if len(p.robots) > 1 else ""
         yield f"{zone}{whose} share a zone that the net does not guard"
     for x in p.served:
-        during, but = (" and ".join(f"`{t}`" for t in ts) for ts in (x.during, x.but))
+        during, but = (listed((f"`{t}`" for t in ts), "or") for ts in (x.during, x.but))
         yield f"  the token of `{x.place}` is away whenever {during} is under way, but not always while {but} is"
     if not p.works:
         yield f"  {p.says}"
@@ -229,8 +238,26 @@ def _proposed(p: Proposal) -> Iterator[str]:
     if any((*p.takes_when, *p.gives_when)):
         yield "    (on these arcs: `if CONDITION then 1`() else empty`)"
     yield f"    arcs to draw: {', '.join(_arcs(p))}"
-    yield f"    (it is empty while {_each(p.while_, p.while_with, 'with')} is marked)"
+    yield f"    (it is empty while {_each(p.while_, p.while_with, 'with', 'or')} is marked)"
     yield f"  {p.says}"
+    yield from _supervised(p.refused)
+    yield f"  not tried: {NOT_TRIED}"
+
+
+def _supervised(refused: str) -> Iterator[str]:
+    """What `generate` would say of the supervisor."""
+    if not refused:
+        yield "  `generate` objects to nothing in its supervisor to which it does not object without the place"
+        return
+    if refused == UNKNOWN:
+        yield f"  {refused}"
+        return
+    yield f"  but `generate` refuses the supervisor with it: {refused}"
+    if refused.startswith(f"{CONFLUENT}:"):
+        yield (
+            "    who takes the token first is then decided by the order of firings: if that may be so, write "
+            '`order = "documented"` in [supervisor]; or give the transitions different priorities'
+        )
 
 
 def _arcs(p: Proposal) -> Iterator[str]:
@@ -243,9 +270,9 @@ def _far(distance: float) -> str:
     return f"{1000.0 * distance:.0f} mm"
 
 
-def _each(names: Sequence[str], cases: Sequence[str], word: str) -> str:
+def _each(names: Sequence[str], cases: Sequence[str], word: str, last: str = "and") -> str:
     told = (f"`{n}`{f' {word} `{c}`' if c else ''}" for n, c in zip(names, cases, strict=True))
-    return ", ".join(told)
+    return listed(told, last)
 
 
 def _many(n: int, what: str) -> str:

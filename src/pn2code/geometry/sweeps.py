@@ -29,6 +29,7 @@ from pn2code.geometry.tracks import Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet_distances import Near
 from pn2code.robot.gripped import MoveEnds
+from pn2code.robot.led_contacts import Led, with_move
 from pn2code.robot.part import Part
 from pn2code.robot.transforms import Array, Flags
 
@@ -48,10 +49,13 @@ MOST_DEEPER = 600
 LIKELY = 2
 """Pieces of one size that are tried before they are small enough to be sure of them."""
 
+_WHOLE = np.array([0.0, 1.0, 0.0, 1.0])
+
 TOGETHER = 16
 """Pieces of which it is seen at once between which links distances are measured."""
 
-Measure = Callable[[Array, Array, float, Near | None], list[Clearance]]
+Measure = Callable[[Array, Array, Array, float, Near | None], list[Clearance]]
+"""What is measured at two joint positions, the middles of a piece (from where to where on both ways)."""
 
 
 class Sweeper:
@@ -87,18 +91,19 @@ class Sweeper:
         calm = {x.robot for x in (a, b) if x.is_calm}
         turning = _turning(a, b)
 
-        def measure(q_a: Array, q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
+        def permitted(x: Clearance, piece: Array) -> Clearance:
+            if not turning.isdisjoint(x.plates):
+                return replace(x, allowed=None)
+            x = self._as_led(x, piece, a, b)
+            return replace(x, stands=True) if free and free <= calm.intersection(x.rides) else x
+
+        def measure(
+            q_a: Array, q_b: Array, piece: Array, limit: float, near: Near | None
+        ) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
             found = self._backend.distances.pairs("robots", a.robot, limit, b.robot, near=near)
-            return [
-                replace(x, allowed=None)
-                if not turning.isdisjoint(x.plates) or self._is_by_the_way(x.a, x.b, a, b)
-                else replace(x, stands=True)
-                if free and free <= calm.intersection(x.rides)
-                else x
-                for x in found
-            ]
+            return [permitted(x, piece) for x in found]
 
         return measure
 
@@ -107,16 +112,35 @@ class Sweeper:
         may = self._backend.distances.allowed
         rows = [
             [
-                not is_free and may(x, y) is not None and not self._is_by_the_way(x, y, a, b)
+                not is_free
+                and may(x, y) is not None
+                and self._led(x, y, _WHOLE, a, b) is not Led.ELSEWHERE
                 for y in b.names
             ]
             for x in a.names
         ]
         return np.array(rows)
 
-    def _is_by_the_way(self, one: str, two: str, *near: Track | Standing) -> bool:
-        """Whether a tool that grips parts, or a part in it, must keep apart from this one: its move leads elsewhere."""
+    def _as_led(self, gap: Clearance, piece: Array, *near: Track | Standing) -> Clearance:
+        """What was measured in the middle of a piece, with what is permitted there, and everywhere in the piece."""
+        if gap.allowed is None:
+            return gap
+        led = self._led(gap.a, gap.b, piece, *near)
+        if led is not Led.FAR:
+            return with_move(gap, led)
+        middle = (piece[0::2] + piece[1::2]) / 2.0
+        here = with_move(gap, self._led(gap.a, gap.b, np.repeat(middle, 2), *near))
+        return replace(here, short=here.allowed or 0.0)
+
+    def _led(self, one: str, two: str, piece: Array, *near: Track | Standing) -> Led:
+        """What moves have to do with a contact of a tool that grips parts, or of a part, in all of a piece of both."""
         tracks = {x.robot: x for x in near if isinstance(x, Track)}
+        rows = piece.reshape(-1, 2).tolist()
+        pieces = {
+            x.robot: (first, last)
+            for x, (first, last) in zip(near, rows, strict=True)
+            if isinstance(x, Track)
+        }
 
         def ends_of(name: str) -> MoveEnds | None:
             return tracks[name].ends if name in tracks else None
@@ -127,7 +151,7 @@ class Sweeper:
 
         parts = {p.name: p for x in near for p in x.parts}
         led = self._backend.distances.led
-        return led.is_by_the_way(one, two, ends_of, parts, stands, ROUNDING)
+        return led.of_pair(one, two, ends_of, parts, stands, pieces.__getitem__, ROUNDING)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands; where they touch, the first overlap that is met."""
@@ -144,15 +168,14 @@ class Sweeper:
         (part,) = stands.parts
         self._show((part, *a.parts))
 
-        def measure(q_a: Array, _q_b: Array, limit: float, near: Near | None) -> list[Clearance]:
+        def measure(
+            q_a: Array, _q_b: Array, piece: Array, limit: float, near: Near | None
+        ) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             found = self._backend.distances.pairs(
                 "scene", a.robot, limit, only={part.name}, near=near
             )
-            return [
-                replace(x, allowed=None) if self._is_by_the_way(x.a, x.b, a, stands) else x
-                for x in found
-            ]
+            return [self._as_led(x, piece, a, stands) for x in found]
 
         return measure
 
@@ -181,7 +204,7 @@ class Sweeper:
             for piece in likely[level.gap_of[likely] < 0.0]:
                 self.queries += 1
                 q = level.joints(piece)
-                found.look(measure(*q, ROUNDING, None), front.pieces[piece], q)
+                found.look(measure(*q, front.pieces[piece], ROUNDING, None), front.pieces[piece], q)
                 if found.touch is not None:
                     return found.touch
             further: list[int] = []
@@ -203,12 +226,14 @@ class Sweeper:
                 # What is not found is further away, or its capsules are.
                 low = np.maximum(level.bound[pairs], wide + FINE - ROUNDING - level.both[pairs])
                 nearest = near(gap_of[number % TOGETHER], wide + FINE, *names)
-                samples = found.look(measure(*q, wide + FINE, nearest), front.pieces[piece], q)
+                own = front.pieces[piece]
+                samples = found.look(measure(*q, own, wide + FINE, nearest), own, q)
                 if found.touch is not None:
                     return found.touch
                 for sample in samples:
                     gap = sample.gap
                     spread = spread_of(gap.a, a, spreads[0]) + spread_of(gap.b, b, spreads[1])
+                    spread += gap.short
                     which = found.which(gap, one, other)
                     least = np.maximum(level.bound[pairs][which], sample.slack - spread)
                     low[which] = np.minimum(low[which], least)
@@ -275,13 +300,13 @@ class Sweeper:
             is_open = False
             lowest = max(best, 0.0) + ROUNDING
             for gap in found:
+                gap = self._as_led(gap, np.array([first, last]), a)
                 allowed = gap.permitted(is_free=a.leg.kind == "ptp")
-                if allowed is not None and self._is_by_the_way(gap.a, gap.b, a):
-                    allowed = None
                 slack = gap.distance if allowed is None else gap.distance + allowed
                 spread = spread_of(gap.a, a, knots.spread[0])
                 if kind == "self":
                     spread += spread_of(gap.b, a, knots.spread[0])
+                spread += gap.short
                 lowest = min(lowest, slack - spread)
                 touches = slack < 0.0 or (slack <= 0.0 and allowed is None)
                 if touches and (touch is None or slack < best):
@@ -386,12 +411,13 @@ def deepest(two: Two, known: Apart) -> Apart:
             measured = cut + ROUNDING
             middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
             limit = wide + max(cut, 0.0) + 2.0 * ROUNDING
-            for gap in two.measure(*joints, limit, near(gap_of, limit, *names)):
+            for gap in two.measure(*joints, own, limit, near(gap_of, limit, *names)):
                 allowed = gap.permitted(is_free=two.is_free)
                 if allowed is not None and two.skipped is not None:
                     continue
                 slack = gap.distance if allowed is None else gap.distance + allowed
                 spread = spread_of(gap.a, a, one.spread[0]) + spread_of(gap.b, b, other.spread[0])
+                spread += gap.short
                 measured = min(measured, slack - spread)
                 if slack < best.nearest:
                     best = Apart(known.outcome, slack, slack, gap, middle, "", joints)

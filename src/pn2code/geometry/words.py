@@ -59,6 +59,12 @@ def reason(why: str, raised: str = "") -> str:
     return _OPEN.get(why) or clause(why)
 
 
+def listed(names: Iterable[str], word: str = "and") -> str:
+    """`a, b and c`."""
+    *most, last = names
+    return f"{', '.join(most)} {word} {last}" if most else last
+
+
 def words(command: Command | None) -> str:
     """A command in the units of scripts."""
     match command:

@@ -1,6 +1,6 @@
 """The zones that a net does not guard: which transitions share them, and a place that would guard each, tried out.
 
-zones = Zones(found, comparison, explore)
+zones = Zones(found, comparison, explore, refused)
 zones.proposals(bad, touching)              # [Proposal(...)]
 """
 
@@ -19,10 +19,12 @@ from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.situations import ON_PLATE, Side, Situation, Situations
 from pn2code.geometry.where import at_rest, stands_at
-from pn2code.geometry.words import reason
+from pn2code.geometry.words import listed, reason
 from pn2code.robot.part import Part
 
 Explore = Callable[[Partition], CellGraph | None]
+Refused = Callable[[Partition], str]
+"""What `generate` would say of a changed cell; "": nothing that it does not say of the cell as it is."""
 Sides = tuple[Side, Side]
 _NONE = (
     "no places of the supervisor are marked exactly while these robots are there: let it command each of them by a "
@@ -41,12 +43,15 @@ class Zones:
     Args:
         found: the situations of the cell as it is.
         comparison: of legs.
-        explore: explores a changed cell.
+        explore: explores a changed cell; refused: asks what `generate` would say of it.
     """
 
-    def __init__(self, found: Situations, comparison: Comparison, explore: Explore) -> None:
+    def __init__(
+        self, found: Situations, comparison: Comparison, explore: Explore, refused: Refused
+    ) -> None:
         self._cell = found.doing.planner.cell
         self._found, self._comparison, self._explore = found, comparison, explore
+        self._refused = refused
         self._stuck = len(mutex.stuck(found.graph))
 
     def proposals(self, bad: Collection[Sides], touching: Sequence[Sides]) -> list[Proposal]:
@@ -96,6 +101,7 @@ class Zones:
                     served=served
                     if guard.place is None
                     else tuple(self._served(zone, guard.place)),
+                    refused=self._refused(mutex.guarded(found.graph.partition, guard, name)),
                 )
             tried = tried or f"{self._told(guard)}, does not help: {problem}"
         none = _RESTS if rests else _NONE
@@ -112,7 +118,7 @@ class Zones:
         """Who takes the token, and who gives it back."""
         net = self._found.graph.partition.net
         takes, gives = (
-            " and ".join(f"`{net.transitions[h.transition].name}`" for h in hands)
+            listed(f"`{net.transitions[h.transition].name}`" for h in hands)
             for hands in (guard.takes, guard.gives)
         )
         return f"taken by {takes} and given back by {gives}" if gives else f"taken by {takes}"

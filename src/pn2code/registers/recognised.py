@@ -20,6 +20,11 @@ _HINT = (
     "a register has one token from the start, which each transition of the supervisor that uses it replaces or puts "
     "back, and each of a robot or device puts back (docs/cookbook.md, `A value that several read`)"
 )
+_SENT = (
+    "let who knows the value send it in a message to the supervisor, which takes it and puts it "
+    "into the register: readers are answered by who sets it, and a robot that moves answers nobody "
+    "(docs/adr/015-values-that-many-read.md)"
+)
 
 
 @frozen
@@ -61,7 +66,12 @@ def registers(
 
 
 def refuse(
-    d: Diagnostics, place: FlatPlace, entry: ChannelConfig, says: str, at: Origin | None = None
+    d: Diagnostics,
+    place: FlatPlace,
+    entry: ChannelConfig,
+    says: str,
+    at: Origin | None = None,
+    hint: str = _HINT,
 ) -> None:
     """An error: this place is no register, for what it `says`."""
     d.error(
@@ -69,7 +79,7 @@ def refuse(
         f"register `{place.name}` {says}",
         at or place.origins[0],
         notes=[Note("it is a register here", entry.origin)],
-        hint=_HINT,
+        hint=hint,
     )
 
 
@@ -97,6 +107,7 @@ def _register(
             place,
             entry,
             f"is changed by {', '.join(others)}, but only the supervisor sets registers",
+            hint=_SENT,
         )
     elif not setters:
         refuse(d, place, entry, "is set by no transition of the supervisor")

@@ -121,7 +121,7 @@ class AlongTrajectory:
         self.delta[k.joints] = 0.0
         self.duration = path.duration
         self.line = path.line
-        self.grid = self.whole(path.grid, path.way(path.times))
+        self.grid = self.whole(path.grid, path.fractions)
 
     def whole(self, joints: Array, s: Array) -> Array:
         """Joint positions with these of the arm, (n, joints), at fractions of the way."""
@@ -148,6 +148,15 @@ class AlongTrajectory:
         out = self.led.rate(t) * self.delta
         out[self.joints] = self.led.qd(t)
         return np.asarray(out)
+
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return self.led.fraction(t)
+
+    @property
+    def length(self) -> float:
+        """m: of the way of the TCP, on the plate if it is led there."""
+        return self.way.inner.length
 
     @property
     def uneven(self) -> float:

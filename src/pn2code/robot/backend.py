@@ -36,6 +36,8 @@ class Clearance:
         second: between robots, the other one.
         rides: the robots of which only a turntable, or what stands on it, is near; plates: of each which one, of a
             device the axis on which it stands.
+        is_early: the move leads to this contact, but is not near enough to touch anything yet, or no more.
+        short: m, by how much less is permitted somewhere in the piece of a move in the middle of which this is.
     """
 
     kind: ClearanceKind
@@ -50,6 +52,8 @@ class Clearance:
     second: str = ""
     rides: tuple[str, ...] = ()
     plates: tuple[str, ...] = ()
+    is_early: bool = False
+    short: float = 0.0
 
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""

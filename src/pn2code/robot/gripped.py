@@ -25,6 +25,9 @@ from pn2code.robot.transforms import Array, difference, inverse, matrix_of
 _NEAR_END = 0.01
 """Of the way: from here to its end it gives the direction in which that leads."""
 
+Piece = tuple[float, float]
+"""Of a move: from where to where, as fractions of its way."""
+
 
 @frozen(eq=False)
 class End:
@@ -75,6 +78,7 @@ class MoveEnds:
     Args:
         tool: in use; "": none.
         is_path: whether it is a line or an arc; turning: the turntables, belts and other axes that it moves.
+        length: m, of the way of the TCP, on the plate if it is led there.
         known: what was asked about it, and the answers.
     """
 
@@ -83,7 +87,8 @@ class MoveEnds:
     tool: str
     is_path: bool
     turning: frozenset[str]
-    known: dict[object, bool] = field(default_factory=dict)
+    length: float = 0.0
+    known: dict[object, tuple[bool, ...]] = field(default_factory=dict)
 
     @staticmethod
     def of(robot: CellRobot, tool: str, path: Trajectory, kind: MotionKind = "lin") -> MoveEnds:
@@ -104,7 +109,14 @@ class MoveEnds:
             outward = way / length if length > 1e-9 else np.zeros(3)
             points = (grip[:3, 3], *((frame @ own)[:3, 3] for own in further))
             ends.append(End(joints[end], grip, frame, points, outward))
-        return MoveEnds(robot, tuple(ends), tool, kind in PATHS, turned_by(robot, path))
+        return MoveEnds(
+            robot, tuple(ends), tool, kind in PATHS, turned_by(robot, path), path.length
+        )
+
+    def is_within(self, way: float, piece: Piece, end: int) -> bool:
+        """Whether a piece of the move is no further (m) from its beginning (`end` 0), or its end (1), along the way."""
+        first, last = piece
+        return (last if end == 0 else 1.0 - first) * self.length <= way
 
     def is_at(self, kind: PartKind, frame: Array, less: float = 0.0) -> bool:
         """Whether one of them is at a part that stands there."""

@@ -185,7 +185,11 @@ class Kinematics:
 
     def forward_many(self, q: Array) -> Array:
         """`T_base_tcp` of n joint positions (n, axes): (n, 4, 4)."""
-        return np.asarray(self._chain.frames(q)[-1] @ self.T_flange_tcp)
+        return self.tcp_at(self._chain.frames(q))
+
+    def tcp_at(self, frames: Sequence[Array]) -> Array:
+        """`T_base_tcp` (n, 4, 4) where the axes are so (`link_frames`)."""
+        return np.asarray(frames[-1] @ self.T_flange_tcp)
 
     def joint_frames(self, q: ArrayLike) -> Array:
         """`T_base_joint` of all axes, after their own motion, and of the flange: (axes + 1, 4, 4)."""
@@ -276,7 +280,7 @@ class Kinematics:
     def states(self, q: Array) -> tuple[Array, list[Conditioning]]:
         """`T_base_tcp` (n, 4, 4) and the conditioning of n joint positions (n, 6); both come from the same frames."""
         frames = self._chain.frames(q)
-        return np.asarray(frames[-1] @ self.T_flange_tcp), self._conditioning(frames)
+        return self.tcp_at(frames), self._conditioning(frames)
 
     def _conditioning(self, frames: Sequence[Array]) -> list[Conditioning]:
         scaled = self._jacobian(frames)

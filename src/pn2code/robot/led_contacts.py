@@ -4,10 +4,12 @@
     led.between("arm/tool_tip", "box.2")    # LedContact("arm", "", "box.2"): because the tool grips boxes
     led.between("arm/box.1", "pallet")      # LedContact("arm", "box.1", "pallet"): it can be put there
     led.between("arm/link_4", "pallet")     # None: something else permits it, or nothing does
-    led.is_led(contact, ends, (carried, other), stands)
+    led.of_move(contact, ends, (carried, other), stands, (s, s))     # Led.NEAR: it leads there, and is there soon
 
 On lines and arcs a tool may touch the part that is gripped, put down or worked on, and no other one of its kind. A part
 that is carried may touch what it is put on or has been lifted from, and the jaws of the clamp in whose place it is.
+All that near the end that is there: as far along the way of the TCP as `PartKind.way` of the part that is gripped or
+carried says. Further away the move leads there, so what comes near is no news, but nothing may be touched yet.
 What couples tools may touch the one that is coupled or left, and that one what holds it in its rack. What rides on a
 plate, belt or other axis that moves may touch of what stands only that on which it stands before or afterwards.
 
@@ -18,13 +20,16 @@ so it does not matter what else is there.
 from __future__ import annotations
 
 import fnmatch
+import math
 from collections.abc import Callable, Iterator, Mapping
+from enum import Enum
 
 import numpy as np
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
+from pn2code.robot.backend import Clearance
 from pn2code.robot.clamps import holding
-from pn2code.robot.gripped import End, MoveEnds
+from pn2code.robot.gripped import End, MoveEnds, Piece
 from pn2code.robot.ground import Ground
 from pn2code.robot.hulls import Hull
 from pn2code.robot.laid import BEYOND, STEPS, is_laid
@@ -51,6 +56,25 @@ class LedContact:
     def is_with(self, ends: MoveEnds | None) -> bool:
         """Whether the other thing is an axis that its owner moves: nothing may be put on it then."""
         return bool(self.part) and ends is not None and self.other in ends.turning
+
+
+EARLY = ", further from where the move leads than `contact_way` of the part"
+"""Of two that may touch, but not here."""
+
+
+class Led(Enum):
+    """What a move has to do with a contact that is permitted only if it leads there, or comes from there."""
+
+    ELSEWHERE = "it leads elsewhere: both keep apart as any two"
+    FAR = "it leads there, but is not near yet, or no more: they come near, and do not touch"
+    NEAR = "it leads there and is near: the contact is permitted"
+
+
+def with_move(gap: Clearance, led: Led) -> Clearance:
+    """A permitted contact, as far as the move permits it."""
+    if led is Led.NEAR:
+        return gap
+    return replace(gap, allowed=None if led is Led.ELSEWHERE else 0.0, is_early=led is Led.FAR)
 
 
 Touching = tuple[Part | None, Part | None]
@@ -82,37 +106,39 @@ class LedContacts:
                     found = LedContact(robot, name if rule.led == "part" else "", other)
         return found
 
-    def is_by_the_way(
+    def of_pair(
         self,
         a: str,
         b: str,
         ends_of: Callable[[str], MoveEnds | None],
         parts: Mapping[str, Part],
         stands: Callable[[str], Array],
+        piece_of: Callable[[str], Piece],
         less: float = 0.0,
-    ) -> bool:
-        """Whether a contact that is permitted as such is none to which the robot's move leads.
+    ) -> Led:
+        """What robots' moves have to do with a contact that is permitted as such; NEAR: no move is asked about it.
 
         Args:
             ends_of: of what a robot or device does, by name; None: it stands, or is not looked at.
-            parts: by the names that they have in contacts; stands, less: as of `is_led`.
+            parts: by the names that they have in contacts; stands, less: as of `of_move`.
+            piece_of: of the move of a robot that moves, by name.
         """
         rides = parts[a].plate if a in parts else ""
         contact = self.between(a, b) or self.of_rider(a, b, rides)
         if contact is None:
-            return False
+            return Led.NEAR
         if not rides and contact.is_with(ends_of(contact.owner)):
-            return True
+            return Led.ELSEWHERE
         ends = ends_of(contact.robot)
         if ends is None:
-            return False
+            return Led.NEAR
         if rides:
             if rides not in ends.turning or b in ends.turning:
-                return False  # it stands, or goes on to a belt that runs as one with its own
+                return Led.NEAR  # it stands, or goes on to a belt that runs as one with its own
         elif not ends.is_path:
-            return False
+            return Led.NEAR
         touching = parts.get(contact.part), parts.get(contact.other)
-        return not self.is_led(contact, ends, touching, stands, less)
+        return self.of_move(contact, ends, touching, stands, piece_of(contact.robot), less)
 
     def of_rider(self, a: str, b: str, plate: str) -> LedContact | None:
         """That of a part on a turntable, belt or other axis ("": on none) with what stands; None: rules permit it."""
@@ -124,20 +150,38 @@ class LedContacts:
             return None
         return LedContact(plate.partition("/")[0], a, b)
 
-    def is_led(
+    def of_move(
         self,
         contact: LedContact,
         ends: MoveEnds,
         touching: Touching,
         stands: Callable[[str], Array],
+        piece: Piece,
         less: float = 0.0,
-    ) -> bool:
+    ) -> Led:
         """Whether a move leads to a contact, or comes from one: at its beginning or end, or up to `BEYOND` further.
 
         Args:
             stands: where the other robots and devices stand, by name.
+            piece: of the move: it is near if all of this piece is.
             less: m and rad, by how much what counts is narrowed.
         """
+        leading = self._leading(contact, ends, touching, stands, less)
+        if not any(leading):
+            return Led.ELSEWHERE
+        way = _way(touching) - less
+        is_near = (x and ends.is_within(way, piece, i) for i, x in enumerate(leading))
+        return Led.NEAR if any(is_near) else Led.FAR
+
+    def _leading(
+        self,
+        contact: LedContact,
+        ends: MoveEnds,
+        touching: Touching,
+        stands: Callable[[str], Array],
+        less: float,
+    ) -> tuple[bool, ...]:
+        """Of its beginning and its end whether they are there."""
         carried, other = touching
 
         def at(end: End) -> Array | None:
@@ -148,7 +192,7 @@ class LedContacts:
         where = b"".join(frame.tobytes() for frame in frames if frame is not None)
         key = (contact, where, less)
         if key not in ends.known:
-            ends.known[key] = any(
+            ends.known[key] = tuple(
                 self._is_at(end, contact, carried, (other, frame), less, ends)
                 for end, frame in zip(ends.ends, frames, strict=True)
             )
@@ -219,6 +263,15 @@ class LedContacts:
             place[:3, 3] += way * outward
             for held in holding(self._cell, kind, place):
                 yield from (f"{held.device.name}/{jaw}" for jaw in held.clamp.jaws)
+
+
+def _way(touching: Touching) -> float:
+    """m: how far before and behind it a contact is permitted; of tools, and of what rides on an axis, all the way."""
+    carried, other = touching
+    part = other if carried is None else carried
+    if part is None or part.plate and part is carried or not isinstance(part.kind, PartKind):
+        return math.inf
+    return part.kind.way
 
 
 def _work(part: Part) -> PartKind:

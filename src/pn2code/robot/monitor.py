@@ -23,7 +23,7 @@ from pn2code.robot.backend import Backend, Clearance, closest
 from pn2code.robot.commands import Pose
 from pn2code.robot.digits import told_apart
 from pn2code.robot.kinematics import Conditioning
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import EARLY, Led, LedContact, LedContacts, with_move
 from pn2code.robot.motion_fault import FaultKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, pose_of
@@ -134,7 +134,7 @@ class Monitor:
         kinds: Mapping[str, MotionKind] | None = None,
         calm: Collection[str] = (),
         turning: Collection[str] = (),
-        leads_to: Callable[[LedContact], bool] = lambda _contact: True,
+        led_to: Callable[[LedContact], Led] = lambda _contact: Led.NEAR,
     ) -> Verdict:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
@@ -147,9 +147,9 @@ class Monitor:
                 is on others touches no other robot, on lines and arcs neither.
             turning: turntables, belts and other axes that move, as `mill/lift`: what stands on these touches nothing
                 of others either.
-            leads_to: whether what a robot does on a line or an arc leads to a contact, or away from it: of parts that
-                its tool grips, and of what the part in its tool can be put on, no other ones are touched. The same of
-                what stands on a turntable or belt that moves.
+            led_to: what the line or arc that a robot is on has to do with a contact: of parts that its tool grips, and
+                of what the part in its tool can be put on, only those are touched to which it leads, and these only
+                near there. The same of what stands on a turntable or belt that moves.
         """
         kinds = kinds or {}
         t = float(t)
@@ -183,10 +183,11 @@ class Monitor:
             moves = any(kinds.get(x, "axis") != "axis" and x not in calm for x in found.rides)
             if found.kind == "robots" and (moves or any(p in turning for p in found.plates)):
                 gap = replace(gap, allowed=None)  # a plate turns, under what the other one does
-            led = None if gap.allowed is None else self._contact(gap, kinds, turning)
+            contact = None if gap.allowed is None else self._contact(gap, kinds, turning)
             moved = turning if gap.kind != "scene" else ()  # the body of a belt stands
-            if led is not None and (led.other in moved or not leads_to(led)):
-                gap = replace(gap, allowed=None)  # nothing is gripped, lifted or put down there
+            if contact is not None:
+                led = Led.ELSEWHERE if contact.other in moved else led_to(contact)
+                gap = with_move(gap, led)  # nothing else is gripped, lifted or put down there
             gaps.append(gap)
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:
@@ -287,7 +288,9 @@ class Monitor:
     def _collision(self, gap: Clearance, t: float, pose: Pose) -> Fault | None:
         depth = 1000.0 * -gap.distance
         where = ", ".join(f"{1000 * v:.0f}" for v in gap.point)
-        if gap.allowed is None and gap.distance <= 0.0:
+        if gap.is_early and gap.distance < 0.0:
+            what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm){EARLY}"
+        elif gap.allowed is None and gap.distance <= 0.0:
             what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm)"
         elif gap.allowed is not None and -gap.distance > gap.allowed:
             deep, most = told_apart(depth, 1000.0 * gap.allowed)

@@ -78,10 +78,11 @@ def check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLimi
             fault.kind, message, pose=fault.pose, q=fault.q, time=fault.time
         ) from None
     # Exact joint speeds, and the real steps: the one sees a singularity nearby, the other a leap over it.
-    rate = np.array([lin.rate(float(t)) for t in times])
-    exact = np.abs(lin.rates(path, rate, lin.way(times))) / limits.axis_velocity
-    step = np.zeros_like(exact)
+    step = np.zeros_like(path)
     step[1:] = np.abs(np.diff(path, axis=0)) / np.diff(times)[:, None] / limits.axis_velocity
+    if (step <= 1.0).all() and lin.is_slower(limits.axis_velocity):
+        return
+    exact = np.abs(lin.rates(path, lin.speeds, lin.fractions)) / limits.axis_velocity
     load = np.maximum(exact, step)
     if (load <= 1.0).all():
         return

@@ -43,6 +43,11 @@ KinematicModel: Any = _opw.KinematicModel
 """Lengths, offsets and directions of an arm with parallel axes 2 and 3 and a spherical wrist."""
 
 
+_NOWHERE = np.array([[1e9, -1e9]] * 6)
+"""Limits (rad) between which no angle is: of what is outside, the library works out no conditioning, which takes five
+times as long as the joint positions."""
+
+
 class Robot:
     """An arm of the library; angles in rad, poses of its flange as 4x4 arrays."""
 
@@ -56,4 +61,4 @@ class Robot:
     def branches(self, poses: Array) -> Array:
         """Joint positions of n poses (n, 4, 4) by branch: (n, 8, 6). A row is NaN where there is no such branch."""
         rows = np.ascontiguousarray(poses.reshape(-1, 16), dtype=np.float64)
-        return np.array(self._robot.reach(rows, None, None, 1)[0])
+        return np.array(self._robot.reach(rows, _NOWHERE, None, 1)[0])

@@ -313,7 +313,12 @@ class Parts:
         grip = self._grip(robot, tcp)
         at = f"at TCP pose {describe(pose_of(grip))}"
         if not standing:
-            raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
+            held_by = (p for p in self.present.values() if p.kind is kind and p.holder)
+            others = ", ".join(f"`{p.name}` is in the tool of `{p.holder}`" for p in held_by)
+            more = f" that stands ({others}, and must be put down first)" if others else ""
+            raise PartFault(
+                f"`{robot}` grips air: there is no part `{kind.name}` to take{more}, {at}"
+            )
         offs = {p.name: _off(kind, self.world(p), grip) for p in standing}
         near = self._nearest([(*offs[p.name], p) for p in standing])
         way, turn = offs[near.name]

@@ -13,11 +13,14 @@ import math
 import re
 from pathlib import Path
 
+import numpy as np
+
 from pn2code.base.frozen import frozen
 from pn2code.cell_file.poses import POSE
 from pn2code.cell_file.things import PART
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
+from pn2code.robot.hulls import Hull
 from pn2code.robot.scene_objects import SceneObject, read_shape
 from pn2code.robot.solid_objects import expect_body
 from pn2code.robot.table import Table
@@ -34,6 +37,8 @@ class PartKind:
         grips: where the TCP may be when it is gripped, in the frame of the part; empty: at its origin, however turned.
         mass: kg; 0: it is not said.
         tolerance: how far the TCP may be from there, m; angle: and how far it may be turned, rad.
+        way: m, so far before the end of a line that leads to it, and behind the beginning of one that comes from it, a
+            tool may touch it, and it what it is put on.
     """
 
     name: str
@@ -43,6 +48,7 @@ class PartKind:
     tolerance: float = 0.005
     angle: float = math.radians(5.0)
     mass: float = 0.0
+    way: float = math.inf
 
 
 def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
@@ -58,9 +64,16 @@ def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
         mass = table.number("mass")
         if shape is not None:
             expect_body(table, shape)  # else nobody could say what it stands on, or is in a zone
+            way = table.number("contact_way") if table.has("contact_way") else longest(shape)
             table.done()
-            out[name] = PartKind(name, shape, at, grips, tolerance, angle, mass)
+            out[name] = PartKind(name, shape, at, grips, tolerance, angle, mass, way)
     return out
+
+
+def longest(shape: SceneObject) -> float:
+    """m: from corner to corner of the box around a shape. No straight line is in it for longer."""
+    corners = [hull.corners for hull in Hull.of(shape)]
+    return float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0))) if corners else math.inf
 
 
 def read_places(t: Table) -> dict[str, Pose]:

@@ -13,7 +13,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-import imageio.v2 as imageio
 import numpy as np
 
 from pn2code.base.closing import Closing
@@ -154,6 +153,8 @@ def save(image: Picture | None, path: Path) -> bool:
     """Writes a PNG; False when there is no picture."""
     if image is None:
         return False
+    import imageio.v2 as imageio  # whoever makes no pictures does not wait for it
+
     imageio.imwrite(path, image)
     return True
 
@@ -165,6 +166,8 @@ class Film(Closing):
         self, path: Path, backend: Backend, camera: Camera, *, fps: int = 12, width: int = 960,
         height: int = 540,
     ) -> None:  # fmt: skip
+        import imageio.v2 as imageio
+
         self._backend, self._camera, self._size = backend, camera, (width, height)
         options: dict[str, Any] = {"fps": fps}
         if path.suffix == ".mp4":

@@ -53,7 +53,7 @@ def turning(start: Array, target: Array) -> tuple[Array, float]:
 def own_spins(axis: Array, angle: float, turns: Array) -> Array:
     """Of a tool that turns evenly about an axis in its own frame."""
     spin = axis * angle
-    return np.stack([r @ spin for r in turns])
+    return np.asarray(turns @ spin)
 
 
 class Line:

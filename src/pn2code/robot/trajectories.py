@@ -22,6 +22,9 @@ from pn2code.robot.transforms import Array
 _CHECK_TIME = 0.01
 _CHECK_LENGTH = 0.002
 _CHECK_ANGLE = math.radians(0.5)
+# Where a matrix and its inverse together are no greater than this, ten digits of the axes' speeds are known: far more
+# than the six to which they are compared with what is permitted.
+_SOUND = 1e6
 
 Swivel = tuple[float, float]
 """Of a way: the arm angle where it begins, and how far that goes until its end, rad."""
@@ -46,6 +49,13 @@ class Trajectory(Protocol):
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way (n,) from 0 to 1, in order: (n, 6). No time is in it."""
 
+    def fraction(self, t: float) -> float:
+        """At which fraction of the way it is at a time."""
+
+    @property
+    def length(self) -> float:
+        """m: of the way on which the TCP is led; 0: it is not led."""
+
 
 @frozen(eq=False)
 class Still:
@@ -69,6 +79,15 @@ class Still:
     def on_way(self, s: Array) -> Array:
         """The position, repeated."""
         return self.sample(s)
+
+    def fraction(self, t: float) -> float:
+        """There is no way."""
+        return 1.0
+
+    @property
+    def length(self) -> float:
+        """There is none."""
+        return 0.0
 
 
 class JointTrajectory:
@@ -101,6 +120,15 @@ class JointTrajectory:
         """Fraction of the way at a time, and its speed, 1/s."""
         return (1.0, 0.0) if self._law is None else self._law.at(t)
 
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return self.progress(t)[0]
+
+    @property
+    def length(self) -> float:
+        """The axes are led, not the TCP."""
+        return 0.0
+
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
         if self._law is None or not 0.0 < t < self.duration:
@@ -119,7 +147,12 @@ class JointTrajectory:
 
 
 class LinearTrajectory:
-    """LIN and CIRC: the TCP on a line or an arc, joints by the closed-form inverse on one branch."""
+    """LIN and CIRC: the TCP on a line or an arc, joints by the closed-form inverse on one branch.
+
+    Attributes:
+        times: at which it is checked when it is planned, s; grid: the joint positions then; fractions: how far on the
+            way it is; speeds: along the way, 1/s.
+    """
 
     def __init__(
         self,
@@ -144,7 +177,7 @@ class LinearTrajectory:
         )
         # Unwrapped positions close enough that the turns of any instant between are those nearby.
         self.times = np.linspace(0.0, law.duration, count + 1)
-        s = self.way(self.times)
+        s, self.speeds = self._progress(self.times)
         self._straight: Straight | None = None
         self.grid = self._k.follow(self.line.at(s), branch, start, self.arm_angles(s))
         if self._k.wrist_axes is not None:
@@ -152,7 +185,9 @@ class LinearTrajectory:
         if self._straight is not None:
             more = [self.when(x) for x in self._straight.near]
             self.times = np.union1d(self.times, np.array(more))
-            self.grid = self._continued(self.way(self.times), start)
+            s, self.speeds = self._progress(self.times)
+            self.grid = self._continued(s, start)
+        self.fractions = s
 
     def arm_angles(self, s: Array) -> Array | None:
         """The arm angle (rad) at fractions of the way; None: the arm has none."""
@@ -194,9 +229,14 @@ class LinearTrajectory:
 
     def way(self, times: Array) -> Array:
         """Fraction of the way at each time, 0 to 1."""
-        out = np.array([self._law.at(float(t))[0] for t in times])
-        out[times >= self.duration] = 1.0
-        return np.asarray(np.clip(out, 0.0, 1.0))
+        return self._progress(times)[0]
+
+    def _progress(self, times: Array) -> tuple[Array, Array]:
+        """The same, and the speed along the way (1/s)."""
+        out = np.array([self._law.at(t) for t in times.tolist()]).reshape(-1, 2)
+        where = out[:, 0].copy()
+        where[times >= self.duration] = 1.0
+        return np.clip(where, 0.0, 1.0), out[:, 1].copy()
 
     def q(self, t: float) -> Array:
         """Joint position, rad."""
@@ -213,6 +253,15 @@ class LinearTrajectory:
         """Fraction of the way at a time, and its speed, 1/s."""
         return self._law.at(t)
 
+    def fraction(self, t: float) -> float:
+        """Fraction of the way at a time."""
+        return float(self.way(np.array([t]))[0])
+
+    @property
+    def length(self) -> float:
+        """m: of the way of the TCP."""
+        return self.line.length
+
     @property
     def uneven(self) -> float:
         """As of its law."""
@@ -224,14 +273,34 @@ class LinearTrajectory:
 
     def rates(self, q: Array, rate: Array, s: Array) -> Array:
         """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s), at fractions s of it."""
-        now = self._k.forward_many(q)
+        jacobian, wanted = self._led(q, rate, s)
+        return np.asarray((np.linalg.pinv(jacobian) @ wanted[..., None])[..., 0])
+
+    def is_slower(self, most: Array) -> bool:
+        """Whether each axis is surely slower than that (rad/s) at all times at which the way is checked.
+
+        False where the arm is so near to a singularity somewhere that only `rates` says what is faster.
+        """
+        jacobian, wanted = self._led(self.grid, self.speeds, self.fractions)
+        try:
+            inverse = np.linalg.inv(jacobian)
+        except np.linalg.LinAlgError:
+            return False
+        size = np.linalg.norm(jacobian, axis=(1, 2)) * np.linalg.norm(inverse, axis=(1, 2))
+        rates = np.abs((inverse @ wanted[..., None])[..., 0])
+        return bool((size < _SOUND).all() and (rates <= (1.0 - 1.0 / _SOUND) * most).all())
+
+    def _led(self, q: Array, rate: Array, s: Array) -> tuple[Array, Array]:
+        """What takes axis speeds to what the way is about (n, axes, axes), and that (n, axes)."""
+        frames = self._k.link_frames(q)
+        now = self._k.tcp_at(frames)
         spins = self.line.spins(now[:, :3, :3], s)
         twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
         wanted = self._k.led_twist(twist, self.swivel * rate)
-        jacobian = self._k.led_jacobian(q)
+        jacobian = self._k.led_jacobian(q, frames)
         if self._straight is not None:
             jacobian = self._straight.held(q, jacobian)
-        return np.asarray((np.linalg.pinv(jacobian) @ wanted[..., None])[..., 0])
+        return jacobian, wanted
 
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""

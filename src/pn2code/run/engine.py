@@ -34,7 +34,7 @@ from pn2code.robot.commands import (
     ToolAction,
 )
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.led_contacts import LedContact
+from pn2code.robot.led_contacts import Led, LedContact
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.robot_cell import RobotCell
@@ -466,7 +466,7 @@ class Engine:
         calm = [name for name, plates in turns.items() if not plates]
         turning = frozenset[str]().union(*turns.values())
         verdict = self.monitor.check(
-            t, joints, self.activity, kinds, calm, turning, lambda led: self._leads_to(led, joints)
+            t, joints, self.activity, kinds, calm, turning, lambda x: self._led_to(x, joints, t)
         )
         self.record.sample(verdict)
         for robot, seen in zip(self.around.arms(), verdict.samples, strict=True):
@@ -483,10 +483,10 @@ class Engine:
             raise CellStoppedError(f"{why}; {doings(self.robots)}")
         self._expect_slow(t, joints)
 
-    def _leads_to(self, contact: LedContact, joints: Mapping[str, Array]) -> bool:
-        """Whether the line or arc that a robot is on leads to a contact, or away from it."""
+    def _led_to(self, contact: LedContact, joints: Mapping[str, Array], t: float) -> Led:
+        """What the line or arc that a robot is on has to do with a contact at time t."""
         runner = next(r for r in self.robots if r.name == contact.robot)
-        return self.around.leads_to(runner, contact, joints)
+        return self.around.led_to(runner, contact, joints, t)
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""

@@ -113,6 +113,15 @@ class Paused:
         """Joint positions at many times."""
         return self.trajectory.sample(self._own(times))
 
+    def fraction(self, t: float) -> float:
+        """At which fraction of the way it is at a time."""
+        return self.trajectory.fraction(float(self._own(np.asarray(t))))
+
+    @property
+    def length(self) -> float:
+        """m: of the way on which the TCP is led."""
+        return self.trajectory.length
+
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way, which has no time in it."""
         return self.trajectory.on_way(s)

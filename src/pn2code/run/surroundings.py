@@ -30,7 +30,7 @@ from pn2code.robot.clamps import (
 )
 from pn2code.robot.commands import Command, Handling, Move, MoveExternal
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import Led, LedContact, LedContacts
 from pn2code.robot.part import PartChange, PartFault
 from pn2code.robot.parts import Parts
 from pn2code.robot.parts_table import PartKind
@@ -129,10 +129,10 @@ class Surroundings:
             except PartFault as fault:
                 raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
 
-    def leads_to(
-        self, robot: RobotRunner, contact: LedContact, joints: Mapping[str, Array]
-    ) -> bool:
-        """Whether the move that is under way leads to a contact, or comes from it; `joints`: where all stand."""
+    def led_to(
+        self, robot: RobotRunner, contact: LedContact, joints: Mapping[str, Array], now: float
+    ) -> Led:
+        """What the move that is under way has to do with a contact; `joints`: where all stand."""
         motion, arm = robot.motion, robot.arm
         assert motion is not None and arm is not None, "an arm moves"
         if robot.name not in self._ends or self._ends[robot.name][0] is not motion:
@@ -141,7 +141,8 @@ class Surroundings:
         present = self.parts.present
         touching = present.get(contact.part), present.get(contact.other)
         ends = self._ends[robot.name][1]
-        return self._led.is_led(contact, ends, touching, lambda name: joints[name])
+        at = motion.trajectory.fraction(now - motion.began)
+        return self._led.of_move(contact, ends, touching, lambda name: joints[name], (at, at))
 
     # --- a motion has ended --------------------------------------------------------------------
 

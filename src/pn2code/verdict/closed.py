@@ -3,8 +3,9 @@
     found = explored(opened, limits, options, d, may_count=True)
 
 It is the cell as it runs that counts, so of a closed net with more than `Limits.counts_from` markings it is first tried
-to count tokens up to a limit only (`verify.exploring.net_by_counts`). Where that shows nothing, all markings are
-explored, as without. A picture, a property of the closed net, or another reduction needs all markings.
+to count tokens up to a limit only (`verify.exploring.net_by_counts`), then to exchange equal parts
+(`verify.exploring.net_by_parts`). Where that shows nothing, all markings are explored, as without. A picture, a
+property of the closed net, or another reduction needs all markings.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify.exploring import net_by_counts
+from pn2code.verify.exploring import net_by_counts, net_by_parts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import COUNTED, Exploration
@@ -50,7 +51,9 @@ def explored(
     if found is None or found.why != "states":
         return found
     final = () if partition is None else partition.final_places
-    known = net_by_counts.look(opened.flat, opened.storage, limits, options, final)
+    known = net_by_counts.look(
+        opened.flat, opened.storage, limits, options, final
+    ) or net_by_parts.look(opened.flat, opened.storage, limits, options, final)
     if known is not None:
         return replace(found, why=COUNTED, known=known)
     return explore(opened.flat, opened.storage, limits, d, options)

@@ -98,7 +98,8 @@ REDUCTION_NOT_POSSIBLE = register(
     "A reduction leaves states out, or treats some as the same, and preserves the answers only for nets that do not "
     "look at the difference. `--reduce time` identifies states that differ only in the model time: no inscription may "
     "read the time, `step()` or the stamps of tokens, and nothing outside the marking (references, random numbers, "
-    "files) may have an influence. `--reduce symmetry` looks at all binding elements beforehand: the net must be "
+    "files) may have an influence. `--reduce symmetry` exchanges equal parts of the net (page instances with what "
+    "belongs to them), or permutes colours: then it looks at all binding elements beforehand, and the net must be "
     "untimed, without code segments and references, over finite colour sets. So does `--reduce partial-order` where "
     "that is possible; elsewhere it goes by transitions, and needs an untimed net in which no inscription draws random "
     "numbers, looks at files or clocks, or asks for the number of steps. The net is explored without the reduction.",

@@ -9,7 +9,7 @@ import pytest
 
 from helpers.row_of_boxes import TOP, Lines, cell_of, pose
 from pn2code.robot.commands import MoveCircular, MoveLinear, Pose
-from pn2code.robot.led_contacts import LedContact
+from pn2code.robot.led_contacts import Led, LedContact
 
 FLOOR = TOP
 """m: where the tool is when the box in it stands on the floor ..."""
@@ -68,8 +68,9 @@ def test_a_run_and_a_proof_say_the_same(
     """Up to a millimetre deep nobody said anything."""
     leg = lines.leg(first, command)
     assert leg.path is not None
-    assert lines.leads_to(leg, LedContact("robot", "box.1", other)) is is_led
-    seen = lines.seen(leg, *leg.path.on_way(np.linspace(0.0, 1.0, 17)))
+    led = lines.led_to(leg, 1.0, LedContact("robot", "box.1", other))
+    assert (led is not Led.ELSEWHERE) is is_led
+    seen = lines.seen(leg, *np.linspace(0.0, 1.0, 17).tolist())
     faults = {v.fault.message.split(" (")[0] for v in seen if v.fault is not None}
     said = f"robot `robot`: `robot/box.1` and `{other}` collide"
     assert said in faults if not is_led else not faults

@@ -19,7 +19,7 @@ from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Along, MoveExternal
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import Led, LedContact, LedContacts
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
@@ -72,16 +72,17 @@ def seen(cell: RobotCell, backend: BulletBackend) -> set[str]:
     ends = MoveEnds.of(cell.robot("feeder"), "", motion.trajectory, motion.kind)
     led, monitor = LedContacts(cell), Monitor(cell, backend)
 
-    def leads_to(contact: LedContact) -> bool:
+    def led_to(contact: LedContact) -> Led:
         touching = parts.get(contact.part), parts.get(contact.other)
-        return led.is_led(contact, ends, touching, lambda name: np.array(cell.robot(name).home))
+        homes = {r.name: np.array(r.home) for r in cell.moving}
+        return led.of_move(contact, ends, touching, homes.__getitem__, (0.0, 1.0))
 
     out = set()
     for q in motion.trajectory.on_way(np.linspace(0.0, 1.0, 25)):
         joints: dict[str, Array] = {r.name: np.array(r.home) for r in cell.moving} | {"feeder": q}
         found = monitor.check(
             0.0, joints, kinds={"feeder": "axis"}, turning=turned(cell.robot("feeder"), motion),
-            leads_to=leads_to,
+            led_to=led_to,
         ).fault  # fmt: skip
         if found is not None:
             out.add(found.message.split(" (")[0])

@@ -62,3 +62,11 @@ def test_an_overlap_that_may_be_deeper_elsewhere(
     assert certain(found) == known
     where = "`r/link_5` and `post` overlap by 20.0 mm at (1700, -500, 1100) mm"
     assert touch_in_words(found) == where + says
+
+
+def test_an_overlap_on_the_way_to_a_contact() -> None:
+    """It may be a millimetre deeper there, where that is permitted."""
+    gap = Clearance("scene", "r", "r/tool_tip", "box.1", -0.0005, 0.0, is_early=True)
+    said = touch_in_words(Apart("touch", -0.0005, -0.0005, gap))
+    assert "mm, further from where the move leads than `contact_way` of the part, and" in said
+    assert said.endswith("and nowhere on the way by more than 1.5 mm")

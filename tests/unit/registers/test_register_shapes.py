@@ -97,6 +97,9 @@ def test_what_is_no_register(case: str, tmp_path: Path) -> None:
     assert any(says in e.message for e in found), [e.message for e in d.errors]
     assert all(e.message.startswith("register `Top.limit` ") for e in found)
     assert {e.code for e in d.errors} == {"register"}
+    sets = [e.hint for e in found if "only the supervisor sets registers" in e.message]
+    assert bool(sets) is (case in ("a reader sets", "a reader takes", "an inhibitor"))
+    assert all("send it in a message to the supervisor" in hint for hint in sets)
 
 
 @pytest.mark.parametrize(

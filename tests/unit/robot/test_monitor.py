@@ -12,7 +12,7 @@ from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.fake import FakeBackend
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContacts
+from pn2code.robot.led_contacts import Led, LedContacts
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.robot_cell import ContactRule
 
@@ -224,8 +224,10 @@ def test_a_part_in_a_tool_is_not_touched_by_a_door_that_moves(cell, backend, hom
     assert fault == {"mill/door": True, "mill/lift": False}
     led = LedContacts(monitor._cell)
     going = MoveEnds(cell.robots[0], (), "", False, frozenset({"mill/door"}))
-    by_the_way = {
-        who: led.is_by_the_way(gap.a, gap.b, {who: going}.get, {}, home.__getitem__)
+    found = {
+        who: led.of_pair(
+            gap.a, gap.b, {who: going}.get, {}, home.__getitem__, lambda _name: (0.0, 1.0)
+        )
         for who in ("mill", "other")
     }
-    assert by_the_way == {"mill": True, "other": False}
+    assert found == {"mill": Led.ELSEWHERE, "other": Led.NEAR}

@@ -20,7 +20,7 @@ from pn2code.robot.motion import plan_lin, plan_ptp
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.tcp_path import Line
 from pn2code.robot.time_law import Law
-from pn2code.robot.trajectories import Still
+from pn2code.robot.trajectories import LinearTrajectory, Still
 from pn2code.robot.transforms import difference, matrix_of
 
 NANOMETRE = 1e-9  # m: 1e-6 mm, what is promised for poses and lines
@@ -102,6 +102,27 @@ def test_linear_move_is_on_the_line_and_turns_evenly(robot, limits):
         assert away < NANOMETRE
         assert turn < NANOMETRE
     assert max(difference(k.forward(move.q(move.duration)), target)) < NANOMETRE
+
+
+def test_what_is_surely_slower_is_slower(robot, limits):
+    k = robot.kinematics
+    start = k.forward(START)
+    move = plan_lin(k, START, start, start @ matrix_of(pose_mm(30, -60, 120, 0, 12, 5)), limits)
+    most = np.abs(move.rates(move.grid, move.speeds, move.fractions)).max(axis=0)
+    assert move.is_slower(most * 1.0001)
+    assert not move.is_slower(most * 0.9999)
+    assert not move.is_slower(most), "rounding decides"
+
+
+def test_nothing_is_surely_slower_near_a_straight_wrist(robot, limits):
+    k = robot.kinematics
+    q = START.copy()
+    q[4] = 1e-7
+    start = k.forward(q)
+    move = LinearTrajectory(
+        k, Line(start, start @ matrix_of(pose_mm(0, 0, 1))), k.branch_of(q), Law(1.0, 1.0, 1.0), q
+    )
+    assert not move.is_slower(np.full(6, np.inf))
 
 
 def test_linear_move_keeps_its_speed_limits(robot, limits):

@@ -94,6 +94,17 @@ def test_what_cannot_be(
     assert parts.present == kept
 
 
+def test_a_part_in_another_tool_is_not_taken_from_there(cell: RobotCell) -> None:
+    """It was as if there were none."""
+    parts = Parts(cell)
+    parts.handle("feeder", FEED, None)
+    parts.handle("robot", TAKE, matrix_of(ABOVE))
+    with pytest.raises(
+        PartFault, match=r"that stands \(`box.1` is in the tool of `robot`, and must"
+    ):
+        parts.handle("other", TAKE, matrix_of(ABOVE))
+
+
 def test_of_several_parts_at_a_place_the_nearest_is_removed() -> None:
     at = [{"x": 1.5, "y": -0.6, "z": z} for z in (0.725, 0.575)]
     cell, d = read(lambda data: data["parts"]["box"].update(at=at, grip_tolerance=0.2))

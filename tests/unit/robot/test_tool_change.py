@@ -26,7 +26,7 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContact, LedContacts
+from pn2code.robot.led_contacts import Led, LedContact, LedContacts
 from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.part import Part, PartFault, carried_to
 from pn2code.robot.parts import Parts
@@ -443,6 +443,8 @@ def test_a_coupling_touches_what_it_takes_and_a_tool_its_own_rack(
     assert lying[0] == LedContact("arm", "", "gripper") and held[0] == LedContact("arm", "", "rack")
     home = np.array(cell.robot("arm").home)
     assert led == tuple(
-        contact is not None and contacts.is_led(contact, ends, (None, part), lambda _name: home)
+        contact is not None
+        and contacts.of_move(contact, ends, (None, part), lambda _name: home, (0.0, 1.0))
+        is Led.NEAR
         for contact, part in (lying, held)
     )

@@ -18,6 +18,10 @@ class Line:
     """One axis that moves a radian a second."""
 
     duration = 4.0
+    length = 2.0
+
+    def fraction(self, t: float) -> float:
+        return t / self.duration
 
     def q(self, t: float) -> Array:
         return np.full(6, t)
@@ -48,6 +52,8 @@ def test_a_pause_stands_and_then_goes_on_where_it_was() -> None:
     }
     for t, where in expected.items():
         assert paused.q(t)[0] == pytest.approx(where), t
+        assert paused.fraction(t) == pytest.approx(where / 4.0), t
+    assert paused.length == 2.0
     times = np.array(list(expected))
     assert paused.sample(times)[:, 0] == pytest.approx(list(expected.values()))
     assert [paused.qd(t)[0] for t in (0.5, 2.0, 4.0, 5.2, 6.0)] == [1.0, 0.0, 1.0, 0.0, 1.0]

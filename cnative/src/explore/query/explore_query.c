@@ -374,6 +374,10 @@ bool ex_is_kept(const ex_queries_t *queries, const ex_question_t *question)
     if (!options->is_stubborn && !options->is_symmetric) {
         return true;
     }
+    const bool is_branching = (question->kind == EX_ASK_BOUND) || (question->kind == EX_ASK_INITIALLY);
+    if (options->instances != NULL) { /* each exchange leaves what is asked as it is, and all that it is made of */
+        return !options->is_stubborn && ((question->kind == EX_ASK_INVARIANT) || is_branching);
+    }
     if (question->kind != EX_ASK_INVARIANT) {
         return false;
     }
@@ -540,6 +544,9 @@ static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
 {
     char file[EX_PATH_SIZE];
     ex_path_t *const path = &question->path;
+    if ((question->kind == EX_ASK_INITIALLY) && (run->options.instances != NULL)) {
+        path->is_failed = true; /* where it comes back to a representative, a run of the net need not */
+    }
     const bool is_shown =
         (question->answer != EX_UNKNOWN) || ((question->kind == EX_ASK_ENDS) && (question->node != EX_NO_NODE));
     if ((path->node != NULL) && !path->is_failed && (question->answer != EX_UNKNOWN)) {

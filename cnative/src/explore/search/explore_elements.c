@@ -4,6 +4,7 @@
  */
 #include "explore_reduce.h"
 #include "explore_counts.h"
+#include "explore_instances.h"
 #include "explore_turns.h"
 
 #include <inttypes.h>
@@ -324,6 +325,23 @@ static bool make_dependency(ex_run_t *run, ex_reduction_t *reduction)
     return problem == NULL;
 }
 
+/* The same where parts of the net are exchanged, and nothing else is reduced. */
+static bool make_instances(ex_run_t *run, ex_reduction_t *reduction)
+{
+    const bool is_fine = (run->owner_of == NULL) && (run->programs == NULL) && ex_instances_make(run, reduction);
+    if (is_fine) {
+        reduction->is_symmetric = true;
+        run->reduction = reduction;
+    } else {
+        ex_note(
+            run, "reduction",
+            "the table of parts cannot be read, is malformed, there is not enough memory, or owners have priorities "
+            "of their own",
+            -1);
+    }
+    return is_fine;
+}
+
 bool ex_reduction_make(ex_run_t *run)
 {
     if ((run->options.turns != NULL) || (run->options.counts != NULL)) {
@@ -334,6 +352,9 @@ bool ex_reduction_make(ex_run_t *run)
         return true;
     }
     ex_reduction_t *reduction = ex_alloc(&run->memory, sizeof *reduction);
+    if (!run->options.is_stubborn && (run->options.instances != NULL)) {
+        return (reduction != NULL) && make_instances(run, reduction);
+    }
     if (run->options.dependency != NULL) {
         return (reduction != NULL) && make_dependency(run, reduction);
     }

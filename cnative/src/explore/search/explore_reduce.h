@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_reduce.h - reductions of the state space: which successors of a state are looked at (explore_stubborn.c), and
- * which state stands for those that are the same but for the names of colours (explore_symmetry.c).
+ * which state stands for those that are the same but for the names of colours (explore_symmetry.c), or but for which of
+ * several equal parts of the net is which (explore_instances.c).
  *
- * Both rest on a table of the binding elements (explore_elements.c) that comes with the net: counters are the colours
+ * All but the last rest on a table of the binding elements (explore_elements.c) that comes with the net: counters are the colours
  * of packed places that can be marked, elements say how many of each they take and put. Successors are made by the
  * compiled net as always; the table decides about them, and where the two differ the run ends with an error.
  */
@@ -70,6 +71,7 @@ typedef struct ex_reduction {
     ex_rotations_t *rotations;
     ex_exchanges_t exchanges;
     struct ex_dependency *dependency; /* of explore_dependency.c; NULL: partial order goes by binding elements */
+    struct ex_instances *instances;   /* of explore_instances.c; NULL: symmetry is of colours */
 } ex_reduction_t;
 
 /* Reads the table of run->options.elements and makes what the workers need. False: run->error says why; its kind is
@@ -110,7 +112,7 @@ const bool *ex_persistent_choose(ex_worker_t *worker, int32_t priority);
 /* --- symmetry ----------------------------------------------------------------------------------------------------- */
 
 /* The marking that stands for all that are symmetric to this one: the same for each of them. It lives until the next
- * call. */
+ * call. NULL: the worker has failed. */
 const void *ex_canonical(ex_worker_t *worker, const void *marking);
 
 /* Ends the run with an error of a kind that is not an exception. */

@@ -11,6 +11,7 @@
 
 #include "explore_local.h"
 #include "explore_counts.h"
+#include "explore_instances.h"
 #include "explore_successors.h"
 #include "../explore_bounds.h"
 #include "../query/explore_early.h"
@@ -509,6 +510,10 @@ static bool begin(ex_run_t *run, ex_level_t *search)
     ex_reduce_time(first);
     if (run->counts != NULL) {
         ex_counts_begin(run, first->marking);
+    }
+    if ((first->exchange != NULL) && !ex_instances_are_even(first, first->marking)) {
+        ex_note(run, "reduction", "the parts that are exchanged do not hold the same at first", -1);
+        return false;
     }
     if (!ex_encode(first, first->marking, &run->initial)) {
         return false;

@@ -80,9 +80,23 @@ static bool is_taken(const hunt_t *hunt, uint32_t transition, const void *next)
 /* The key of a successor, of that which stands for it if there are symmetries. */
 static bool encode(const hunt_t *hunt, uint32_t transition, const void *next, ex_key_t *key)
 {
-    const ex_reduction_t *reduction = hunt->worker->run->reduction;
+    ex_worker_t *const worker = hunt->worker;
+    const ex_reduction_t *reduction = worker->run->reduction;
     if ((reduction != NULL) && reduction->is_symmetric) {
-        return ex_encode(hunt->worker, ex_canonical(hunt->worker, next), key);
+        pn_arena_t *const arena = &worker->scratch->arena;
+        const size_t mark = pn_arena_mark(arena);
+        const size_t peak = arena->peak; /* what is needed to find it is no need of the net */
+        const uint32_t root = worker->run->codec->root_word;
+        uint32_t *const held = (root == UINT32_MAX) ? NULL : &worker->scratch->cell[root];
+        const uint32_t before = (held == NULL) ? 0U : *held; /* what references are to hold again */
+        const void *const marking = ex_canonical(worker, next);
+        const bool is_fine = (marking != NULL) && ex_encode(worker, marking, key);
+        if (held != NULL) {
+            *held = before;
+        }
+        pn_arena_release(arena, mark);
+        arena->peak = peak;
+        return is_fine;
     }
     return ex_encode_next(hunt->worker, transition, next, key);
 }

@@ -7,6 +7,7 @@
  * in turn, unless it is known that this leads to the same (points whose exchange leaves the marking as it is; points
  * whose first leaf is one that is known).
  */
+#include "explore_instances.h"
 #include "explore_reduce.h"
 
 #include <string.h>
@@ -429,6 +430,9 @@ static void turn(symmetry_t *own, uint32_t group) // NOLINT(misc-no-recursion)
 const void *ex_canonical(ex_worker_t *worker, const void *marking)
 {
     symmetry_t *own = worker->symmetry;
+    if (worker->exchange != NULL) {
+        return ex_instances_canonical(worker, marking);
+    }
     const ex_reduction_t *reduction = own->reduction;
     for (uint32_t c = 0U; c < reduction->counters; c++) {
         own->value[c] = ex_count_of(&reduction->counter[c], marking);

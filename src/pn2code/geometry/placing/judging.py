@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, replace
 from pn2code.geometry.placing.free import Free, base_of, moved
 from pn2code.geometry.placing.plan import Among, Plan, Walk
 from pn2code.geometry.reach_map import Judged, Task, judge
@@ -26,7 +26,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.gripped import MoveEnds
-from pn2code.robot.led_contacts import LedContacts
+from pn2code.robot.led_contacts import LedContacts, with_move
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 
@@ -168,9 +168,13 @@ class Judge:
                 for among in way.among:
                     shown.show(among.parts.values())
                     seen = _Seen(placed, name, way.ends, among)
-                    for row in walk.q[way.rows]:
+                    rows = walk.q[way.rows]
+                    for at, row in zip(
+                        np.linspace(0.0, 1.0, len(rows)).tolist(), rows, strict=True
+                    ):
                         backend.set_joints(name, row)
-                        least = min(least, self._standing(backend, seen, least))
+                        now = replace(seen, at=at)
+                        least = min(least, self._standing(backend, now, least))
                         if least <= 0.0 or least < enough:
                             return least
             backend.set_joints(name, placed.robot(name).home)
@@ -197,9 +201,17 @@ class Judge:
         How far parts that stand are from what is carried past them the net says, not where the arm stands.
         """
         allowed = gap.permitted(is_free=seen.ends is None or not seen.ends.is_path)
-        if allowed is None or self._led.is_by_the_way(
-            gap.a, gap.b, seen.ends_of, seen.among.parts, seen.stands
-        ):
+        if allowed is not None:
+            led = self._led.of_pair(
+                gap.a,
+                gap.b,
+                seen.ends_of,
+                seen.among.parts,
+                seen.stands,
+                lambda _: (seen.at, seen.at),
+            )
+            allowed = with_move(gap, led).allowed
+        if allowed is None:
             is_part = gap.b in seen.names
             return FAR if is_part and gap.distance > 0.0 else gap.distance
         return FAR if gap.distance + allowed >= 0.0 else gap.distance
@@ -207,12 +219,13 @@ class Judge:
 
 @frozen(eq=False)
 class _Seen:
-    """A robot on its way, and the parts around it."""
+    """A robot on its way, at a fraction of it, and the parts around it."""
 
     cell: RobotCell
     robot: str
     ends: MoveEnds | None
     among: Among
+    at: float = 0.0
 
     @property
     def names(self) -> frozenset[str]:

@@ -92,9 +92,12 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
 def _counted(found: Exploration, known: Known) -> str:
     """What is said of a closed net whose markings were not counted to the end."""
     ends = "which has a token in a final place" if known.ends else "which may be no end"
+    how = "in which tokens are counted up to a limit"
+    if known.symmetries:
+        how = f"symmetric to others ({', '.join(known.symmetries)})"
     return (
         f"the closed net has more than {found.nodes:,} markings; `--no-reduction` counts them. {known.nodes:,} states, "
-        "in which tokens are counted up to a limit, stand for all of them (docs/reductions.md): no inscription raises "
+        f"{how}, stand for all of them (docs/reductions.md): no inscription raises "
         f"an exception, and each run comes to a dead marking, {ends}. Bounds, arcs and numbers of dead markings are "
         "those of the part that was seen."
     )

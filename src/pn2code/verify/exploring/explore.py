@@ -174,6 +174,7 @@ def explore(
     ) as search:
         found = _explored(net, storage, limits, d, options, search if options.covering else None)
         may_sweep = limits.sweeps is None and options.turns is None and options.counts is None
+        may_sweep = may_sweep and set(limits.reductions) <= {Reduction.TIME}
         if found is not None and may_sweep and sweep.may_help(found):
             found = _swept_after(net, storage, limits, d, options, found)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
@@ -252,7 +253,9 @@ def _explored(
         with deadline.enforced():
             if nondeterminism.refuse(net, d):
                 return None
-            chosen = possible(net, limits.reductions, d, options.predicates)
+            chosen = possible(
+                net, limits.reductions, d, options.predicates, storage, options.questions
+            )
             if limits.sweeps:
                 chosen = sweep.chosen(net, storage, chosen, d)
             made = options.generated or Generated()
@@ -291,7 +294,7 @@ def _explored(
                 if not options.interrupted() and first is not None:
                     # The compiler was not done in time: what the program before has seen is what is known.
                     seen = {**first, "why": "seconds"}
-                    return Exploration.of(net, seen, compiling)
+                    return chosen.told(Exploration.of(net, seen, compiling), net)
                 if not options.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
@@ -351,20 +354,18 @@ def _explored(
             _differs(net, error, d)
             return None
         if error and error["kind"] == "heap":
-            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
+            heaped = {**found, "error": None, "why": HEAPED}
+            return chosen.told(Exploration.of(net, heaped, compiling), net)
         if not error or error["kind"] not in ("capacity", "memory"):
-            return replace(
-                Exploration.of(net, found, compiling),
-                symmetries=chosen.symmetry_names(),
-                measure=chosen.progress.names(net) if chosen.progress else "",
-            )
+            return chosen.told(Exploration.of(net, found, compiling), net)
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         if (
             place is not None
             and place.index in options.heaps
             and sizes.held(place.name) >= MOST_HEAPED
         ):
-            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
+            heaped = {**found, "error": None, "why": HEAPED}
+            return chosen.told(Exploration.of(net, heaped, compiling), net)
         larger = sizes.larger(place.name if place else None)
         if larger is None:
             what = f"place `{place.name}`" if place else "one marking's lists and strings"
@@ -374,7 +375,7 @@ def _explored(
                 place.origins[0] if place else Origin(net.file),
                 hint="run the net with `pn2code simulate`, limit the place in the net, or limit the exploration",
             )
-            return Exploration.of(net, {**found, "why": "memory"}, compiling)
+            return chosen.told(Exploration.of(net, {**found, "why": "memory"}, compiling), net)
         sizes = larger
         first = {**found, "error": None}
 

@@ -31,6 +31,7 @@ KEPT_ERRORS = 20
 """Lines of what the explorer says that are no progress."""
 _TABLES = {
     "--elements": "binding elements",
+    "--instances": "equal parts",
     "--dependency": "dependencies",
     "--queries": "questions",
     "--turns": "turns",
@@ -81,6 +82,7 @@ def run_with_tables(
     """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
     tables = {
         "--elements": chosen.elements.text() if chosen.elements else "",
+        "--instances": chosen.instances.text() if chosen.instances else "",
         "--dependency": chosen.dependency.text() if chosen.dependency else "",
         "--queries": options.questions,
         "--turns": options.turns.text() if options.turns else "",

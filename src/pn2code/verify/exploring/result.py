@@ -118,7 +118,7 @@ COUNTED = "counted"
 
 @frozen
 class Known:
-    """What is known of all markings of a net, where not all were counted (`net_by_counts`).
+    """What is known of all markings of a net, where not all were counted (`net_by_counts`, `net_by_parts`).
 
     Each run comes to a dead marking, and no inscription raises an exception.
 
@@ -126,6 +126,7 @@ class Known:
         nodes, arcs, seconds: of the states that were explored.
         ends: whether each dead marking of a cell has a token in a final place; if not, that is not known.
         never: transitions that never occur; of others that did not occur in the part that was seen it is not known.
+        symmetries: for people, what is exchanged; (): tokens were counted up to a limit.
     """
 
     nodes: int
@@ -133,6 +134,7 @@ class Known:
     seconds: float
     ends: bool
     never: tuple[int, ...]
+    symmetries: tuple[str, ...] = ()
 
 
 @frozen

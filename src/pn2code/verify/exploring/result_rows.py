@@ -103,6 +103,7 @@ def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:
         "infinite_occurrence_sequences": False,
         "dead_markings_are_ends": known.ends or None,
         "dead_transitions": [name(i) for i in known.never],
+        "symmetries": list(known.symmetries),
     }
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
 from pn2code.base.frozen import frozen
@@ -81,6 +82,13 @@ class Symmetries:
         if self.full:
             said += [f"exchanges in {name}" for name in self.full.colsets]
         return tuple(said)
+
+    @property
+    def order(self) -> int:
+        """Of the group: how many permutations there are."""
+        of_rotations = (r.order * (2 if r.reflection else 1) for r in self.rotations)
+        sizes = Counter(self.full.classes).values() if self.full else ()
+        return math.prod(of_rotations) * math.prod(map(math.factorial, sizes))
 
 
 def symmetries(u: Unfolding) -> Symmetries:
