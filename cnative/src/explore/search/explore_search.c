@@ -216,7 +216,7 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
     const ex_level_t *search = has_begun ? run->level : NULL;
     const uint64_t known = has_begun ? atomic_load_explicit(&run->store.used, memory_order_relaxed) : 0U;
     const uint64_t states = (has_begun && (run->sweep != NULL)) ? ex_sweep_states(run) : known;
-    progress->states = states;
+    *progress = (ex_progress_t){ .states = states }; /* before the search there is nothing else */
     if (search != NULL) {
         const uint64_t expanded = atomic_load_explicit(&search->expanded, memory_order_relaxed);
         progress->arcs = atomic_load_explicit(&search->arcs, memory_order_relaxed);

@@ -46,6 +46,9 @@ void ex_store_empty(ex_store_t *store);
 /* Makes room, and words of keys as wide as they have to be; does nothing when all is well. False when there is no
  * memory (the store stays as it was, or has lost keys: the run ends). Nobody else uses it. */
 bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS]);
+/* Another table takes the place of the store's, whose number of keys stays: others may read it at any time, to tell how
+ * far the exploration is. Nobody else uses the rest. */
+void ex_store_replace(ex_store_t *store, const ex_store_t *new);
 uint64_t ex_store_bytes(const ex_store_t *store);
 
 static inline void ex_store_prefetch(const ex_store_t *store, uint64_t hash)
