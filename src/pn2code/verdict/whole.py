@@ -247,6 +247,10 @@ def look(
         found = unfolded.look(opened, asked, found, limits, own_options or options, why_not)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
+    if cell is not None:
+        # What is asked of its programs needs the graph: markings are forgotten where there is no memory for it only.
+        limits = replace(limits, sweeps=False if limits.sweeps is False else None)
+        options = replace(options, needs_graph=True)
     control: Control | None = None
     if cell is not None and asks_control:
         options.stage("exploring the cell as its programs run ...")
@@ -394,7 +398,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
             guard_order.not_there(opened.flat, t.index)
             or "CPN Tools may see first that tokens are missing, or that another condition is false, and raise nothing"
         )
-    if error.get("node") is None and found.swarm is None:
+    if error.get("node") is None and found.swarm is None and found.sweep is None:
         notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")

@@ -201,6 +201,12 @@ void ex_store_free(ex_store_t *store)
     store->bucket = NULL;
 }
 
+void ex_store_empty(ex_store_t *store)
+{
+    (void)memset(store->bucket, 0, ex_store_bytes(store));
+    atomic_store(&store->used, 0U);
+}
+
 void ex_store_replace(ex_store_t *store, const ex_store_t *new)
 {
     (void)memcpy(store, new, offsetof(ex_store_t, used));

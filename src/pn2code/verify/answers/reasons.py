@@ -23,6 +23,7 @@ _CLAUSES = {
     "swarm": "a swarm of searches looks at many markings, and cannot know whether it has seen all",
     "graphless": "the searches of a swarm keep no graph, which this answer needs",
     "colourless": "the searches of a swarm do not keep the values of tokens, which this answer needs",
+    "sweep": "markings were forgotten on the way, and it is about runs, which need the graph between all of them",
     "reduction": "the reduction of the state space does not preserve it",
     "endless": "the response is not finite",
     "speeds": "it depends on the order of events, and so on their durations",
