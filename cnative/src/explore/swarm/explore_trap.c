@@ -7,6 +7,7 @@
  * halving.
  */
 #include "explore_swarm.h"
+#include "../search/explore_search.h"
 
 #include <string.h>
 
