@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.contents import Contents, spot
 from pn2code.geometry.doubts import APART, Doubt, Doubts
 from pn2code.geometry.graph import CellGraph
@@ -123,7 +124,7 @@ class AtOnce:
             if self._graph.elements[e].owner == self._graph.elements[f].owner:
                 continue
             if (a.number, b.number) not in self._near:
-                self._near[a.number, b.number] = self._doing.part_events_near(a, b)
+                self._near[a.number, b.number] = self._doing.plates.part_events_near(a, b)
             found = self._near[a.number, b.number]
             if found:
                 self._turning(number, (e, a), (f, b), found)
@@ -140,12 +141,12 @@ class AtOnce:
         self._doubts.because("turning")
         if other[1].fault:  # which is told
             return
-        sure = [(p, m) for p, m in found if p in m.plates and self._doing.moves_first(a, p)]
+        sure = [(p, m) for p, m in found if p in m.plates and self._doing.plates.moves_first(a, p)]
         is_sure = bool(sure)
         plate, event = (sure or found)[0]
         x, y, z = (f"{1000.0 * v:.0f}" for v in event.point)
         if is_sure:
-            moves = self._doing.does(plate)
+            moves = self._doing.plates.does(plate)
             says = f"{event.says} {event.goes} `{plate}` while that {moves}, at ({x}, {y}, {z}) mm"
         else:
             on = "can be" if plate in event.plates else "can come"

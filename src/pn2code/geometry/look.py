@@ -14,7 +14,8 @@ from pathlib import Path
 from pn2code.base.deadline import OverError
 from pn2code.base.frozen import frozen
 from pn2code.base.how_far import HowFar, Say, silent
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.around import around_of

@@ -19,7 +19,8 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.cell.partition import OwnerKind
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.at_once import AtOnce
 from pn2code.geometry.contents import Contents
 from pn2code.geometry.doubts import Doubt, Doubts
@@ -141,7 +142,7 @@ class Situations:
     def resting(self, side: Side, name: str, leg: Leg, contents: Contents) -> Side:
         """Of an arm what stands on a plate of it that stands, by a name of the collision library, whatever it does."""
         found = like(name, contents)
-        if not found or self.doing.is_moved(leg, found[0].plate):
+        if not found or self.doing.plates.is_moved(leg, found[0].plate):
             return side
         return (side[0], ON_PLATE, self.number_of(found[0]))
 

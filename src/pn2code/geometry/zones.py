@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 
 from pn2code.cell.partition import Partition
 from pn2code.geometry import mutex
-from pn2code.geometry.activities import Activity
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.answers import Proposal, Rest, Served
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
