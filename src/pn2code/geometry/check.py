@@ -24,7 +24,8 @@ from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell, explore_wider, most_held
 from pn2code.geometry.large import MOST_OF_PART, answer_of, sought_in
-from pn2code.geometry.look import Look, Options
+from pn2code.geometry.look import Look
+from pn2code.geometry.look_options import Options
 from pn2code.geometry.progress import LATE
 from pn2code.geometry.supervised import Supervised
 from pn2code.geometry.words import reason

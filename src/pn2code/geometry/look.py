@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
-from pathlib import Path
+from collections.abc import Iterable, Iterator
 
 from pn2code.base.deadline import OverError
-from pn2code.base.frozen import frozen
-from pn2code.base.how_far import HowFar, Say, silent
+from pn2code.base.how_far import HowFar
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.activity import Activity
 from pn2code.geometry.answers import Layout, Move, Open, Pair, Proposal, Verdict
@@ -24,7 +22,9 @@ from pn2code.geometry.contents import Load, spots
 from pn2code.geometry.doubts import APART
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.part_names import as_in_runs, as_seen, gap_as_seen, like, shown
+from pn2code.geometry.look_options import Options
+from pn2code.geometry.met_pairs import certain, pair_of, touch_in_words
+from pn2code.geometry.part_names import as_in_runs, gap_as_seen, like, shown
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.progress import LATE, Meeting, Progress, Seen
 from pn2code.geometry.runs import Run, write
@@ -33,13 +33,12 @@ from pn2code.geometry.situation import ON_PLATE, Met, Side
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
-from pn2code.geometry.zones import Explore, Refused, Zones, sides_of
+from pn2code.geometry.zones import Zones, sides_of
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint
-from pn2code.robot.led_contacts import EARLY
 from pn2code.robot.motion_checks import other_branches
-from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 
 _NOWHERE = Clearance("robots", "", "", "", 0.0, None, (0.0, 0.0, 0.0))
@@ -47,29 +46,6 @@ MOST_RUNS = 40
 """Traces that are written."""
 MOST_DEPTHS = 6_000
 """Distances after which no more overlaps are searched for where they are deepest; one of each two robots always is."""
-
-
-@frozen
-class Options:
-    """How.
-
-    Args:
-        folder: of the traces; stem: what their names begin with.
-        initial: markings that files gave, for the headers of traces.
-        explore: explores a changed cell; None: no proposals.
-        stage: hears in words what is done; say: and how far it is.
-        jobs: processes that sweep.
-        refused: what `generate` would say of a changed cell.
-    """
-
-    folder: Path
-    stem: str
-    initial: str | None = None
-    explore: Explore | None = None
-    stage: Callable[[str], None] = lambda _text: None
-    jobs: int = 1
-    say: Say = silent
-    refused: Refused = lambda _changed: ""
 
 
 class Look:
@@ -119,7 +95,9 @@ class Look:
             moves += self._wrong_moves(found)
             touching = [m for m in (*known.arms.values(), *known.parts.values()) if m.is_touch]
             first = {m.told: m for m in reversed(touching)}
-            pairs += [_met(m, m.apart, self._run(found, m.met)) for m in reversed(first.values())]
+            pairs += [
+                pair_of(m, m.apart, self._run(found, m.met)) for m in reversed(first.values())
+            ]
             pairs += self._turning(found)
         return Layout(
             self.layout,
@@ -450,7 +428,7 @@ class Look:
             if m in deepest or asked < MOST_DEPTHS:
                 depths[m] = self.comparison.deepest(m.apart)
         made = {
-            key: _met(m, depths.get(m, m.apart), self._run(found, m.met))
+            key: pair_of(m, depths.get(m, m.apart), self._run(found, m.met))
             for key, m in first.items()
         }
         return [made[m.told] for m in meetings]
@@ -521,58 +499,3 @@ def _who(found: Situations, element: int) -> tuple[str, str]:
     e = found.graph.elements[element]
     partition = found.graph.partition
     return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
-
-
-def _met(meeting: Meeting, apart: Apart, run: Run | None) -> Pair:
-    """Two things that do not surely keep apart; a part has no robot, and no joints."""
-    is_touch = apart.outcome == "touch"
-    says = touch_in_words(apart) if is_touch else as_in_runs(apart.why)
-    apart = as_seen(apart)
-    joints = zip(meeting.robots, apart.joints, strict=False)
-    return Pair(
-        meeting.robots,
-        meeting.transitions,
-        meeting.doing,
-        "no" if is_touch else "unknown",
-        says,
-        apart.where,
-        apart.where.distance if apart.where else 0.0,
-        tuple((r, tuple(map(float, q))) for r, q in joints if r),
-        run,
-        around=meeting.around,
-        least=_most_in(apart) if is_touch else None,
-        is_held=is_touch and bool(apart.why),
-        things=meeting.things,
-    )
-
-
-def certain(apart: Apart) -> float | None:
-    """The distance (m) below which nothing comes, negative where it touches; None: that is not known."""
-    return None if apart.outcome == "open" or math.isinf(apart.least) else apart.least
-
-
-def _most_in(apart: Apart) -> float:
-    """The least distance (m) that the links which touch can have anywhere on the way."""
-    assert apart.where is not None
-    # Nearer to where the move leads they may touch, and may be deeper by so much than here.
-    permitted = PART_CONTACT if apart.where.is_early else apart.nearest - apart.where.distance
-    return min(apart.least - permitted, apart.where.distance)
-
-
-def touch_in_words(apart: Apart) -> str:
-    """Which links overlap, where, by how much, and that it is nowhere much more, if that is known."""
-    gap = apart.where
-    assert gap is not None
-    if apart.why:
-        return as_in_runs(apart.why)
-    at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
-    least = "" if apart.is_whole else "at least "
-    text = f"{shown(gap.a)} and {shown(gap.b)} overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
-    if gap.is_early:
-        text += EARLY
-    if not apart.is_whole:
-        return f"{text}; where it is deepest was not searched for"
-    if certain(apart) is None:
-        return f"{text}; how deep on the rest of the way is not known"
-    most = -1000.0 * _most_in(apart)
-    return f"{text}, and nowhere on the way by more than {math.ceil(10.0 * most) / 10.0:.1f} mm"

@@ -14,7 +14,7 @@ from helpers.robot_cells import nowhere, pose_mm
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.look import touch_in_words
+from pn2code.geometry.met_pairs import touch_in_words
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Track
 from pn2code.robot.bullet import BulletBackend

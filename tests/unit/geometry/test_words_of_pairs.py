@@ -9,7 +9,7 @@ import pytest
 
 from pn2code.geometry.answers import Layout, Nearest, Pair
 from pn2code.geometry.apart import Apart
-from pn2code.geometry.look import certain, touch_in_words
+from pn2code.geometry.met_pairs import certain, touch_in_words
 from pn2code.geometry.report import text
 from pn2code.geometry.runs import Run
 from pn2code.robot.backend import Clearance

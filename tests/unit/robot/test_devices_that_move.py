@@ -18,7 +18,7 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Contents
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.look import touch_in_words
+from pn2code.geometry.met_pairs import touch_in_words
 from pn2code.geometry.shown import Shown
 from pn2code.replay.cell import describe
 from pn2code.robot.bullet import BulletBackend

@@ -20,7 +20,7 @@ from pn2code.geometry.activities import Doing
 from pn2code.geometry.check import cell_of, cells_of, is_there
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Planner
-from pn2code.geometry.look import Options
+from pn2code.geometry.look_options import Options
 from pn2code.geometry.placing.free import Free, moved, parse
 from pn2code.geometry.placing.judging import Judge
 from pn2code.geometry.placing.plan import Plan, parts_of

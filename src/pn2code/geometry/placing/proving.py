@@ -12,7 +12,9 @@ from collections.abc import Collection
 from pn2code.base.frozen import frozen
 from pn2code.geometry.answers import Layout, Verdict
 from pn2code.geometry.graph import CellGraph
-from pn2code.geometry.look import Look, Options, touch_in_words
+from pn2code.geometry.look import Look
+from pn2code.geometry.look_options import Options
+from pn2code.geometry.met_pairs import touch_in_words
 from pn2code.geometry.placing.search import Wish
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import words
