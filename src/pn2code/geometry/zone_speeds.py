@@ -106,7 +106,9 @@ def _seen(watch: ZoneWatch, track: Track, load: Load, t: float) -> TooFast | Non
 def _told(worst: TooFast) -> str:
     """What is most too fast at the instants that were looked at first, and how fast the move may be."""
     percent = 100.0 / worst.times
-    shown = f"{math.floor(percent)}" if percent >= 10.0 else f"{math.floor(10.0 * percent) / 10.0:g}"
+    shown = (
+        f"{math.floor(percent)}" if percent >= 10.0 else f"{math.floor(10.0 * percent) / 10.0:g}"
+    )
     return f"{worst.words()}: the worst of {_FIRST + 1} instants; about {shown} % of this speed would do"
 
 
