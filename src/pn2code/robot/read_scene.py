@@ -41,6 +41,7 @@ def read_scene(
     )
     things = [
         *names,
+        *(f"{r.name}_{what}" for r in robots for what in ("pedestal", "rail")),
         *(r.name for r in devices),
         "panel",
         "floor",

@@ -276,9 +276,22 @@ def test_an_axis_is_at_a_position() -> None:
     assert not mill.is_at("vice", np.array([0.0, 0.06, 0.06]), 0.06)
 
 
+BELT = """
+[devices.mill.axes.belt]
+kind = "belt"
+pose = { x = 3.0, z = 0.5 }
+length = 1.0
+width = 0.2
+"""
+
+
 def test_what_a_sensor_sees_is_there(tmp_path: Path) -> None:
     for sensor, words in (
         ('sees = "mill.dor"\nat = 0.0', "`sees` names `mill.dor`, but no device has such an axis"),
+        (
+            f'sees = "mill.belt"\n{BELT}',
+            "`sees` names `mill.belt`, but that is a belt: how far it has run s",
+        ),
         ('sees = "mill.door"', "`sees` names axis `mill.door`, but not at which position"),
         ('sees = "inVice"\nat = 0.1', "`at` says where an axis is seen, but `sees` names none"),
         ('sees = "front"\npart = "blank"', "but `front` is no place"),
