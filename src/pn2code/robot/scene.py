@@ -31,7 +31,7 @@ from pn2code.robot.read_robot import read_robot
 from pn2code.robot.read_scene import read_scene
 from pn2code.robot.robot_cell import CellRobot, MotionConfig, RobotCell
 from pn2code.robot.table import Locate, Table
-from pn2code.robot.tools_table import ToolKind, expect_somewhere, read_tools
+from pn2code.robot.tools_table import ToolKind, expect_holders, expect_somewhere, read_tools
 from pn2code.robot.zones import unread
 from pn2code.robot.zones_table import read_zones
 
@@ -84,6 +84,7 @@ def load(
     around = Around(folder, places, max((h.radius for h in hulls), default=0.0))
     devices = read_devices(table("devices", None), around)
     scene = read_scene(table("scene", SCENE), robots, devices, names, (kinds, tools), folder)
+    expect_holders(table("tools", None), tools, scene.objects)
     zones = read_zones(table("zones", None))
     _expect_own_names(table("tools", None), tools, robots)
     if len(d.errors) != before:
