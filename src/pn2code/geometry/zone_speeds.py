@@ -21,7 +21,7 @@ from pn2code.geometry.tracks import Knots, Track
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory
 from pn2code.robot.transforms import Array
-from pn2code.robot.zones import TooFast, ZoneWatch
+from pn2code.robot.zones import TooFast, ZoneWatch, is_faster
 
 _INSTANTS = 400
 """At which the law of a move is looked at; half way is one of them: there it is fastest, unless it is uneven."""
@@ -107,7 +107,7 @@ def _told(worst: TooFast) -> str:
     """What is most too fast at the instants that were looked at first, and how fast the move may be."""
     percent = 100.0 / worst.times
     shown = (
-        f"{math.floor(percent)}" if percent >= 10.0 else f"{math.floor(10.0 * percent) / 10.0:g}"
+        f"{math.floor(percent + 1e-6)}" if percent >= 10.0 else f"{math.floor(10.0 * percent) / 10.0:g}"
     )
     return f"{worst.words()}: the worst of {_FIRST + 1} instants; about {shown} % of this speed would do"
 
@@ -122,7 +122,7 @@ def _suspects(
     out: dict[int, str] = {}
     for zone in watch.limited:
         assert zone.max_speed is not None
-        for i, j in zip(*np.nonzero(fast > zone.max_speed), strict=True):
+        for i, j in zip(*np.nonzero(is_faster(fast, zone.max_speed)), strict=True):
             if i not in out and watch.off(zone.name, corners[i, j]) <= knots.spread[i, j]:
                 out[int(i)] = track.links[j].name
     return out

@@ -30,6 +30,8 @@ from pn2code.robot.zones_table import Zone
 
 _STEP = 1e-6
 """s: over which places are compared to know how fast they change."""
+_ROUNDING = 1e-6
+"""Of a speed: what is commanded as fast as may be in a zone is not too fast because numbers are rounded."""
 
 
 @frozen(eq=False)
@@ -67,6 +69,11 @@ class TooFast:
         """So many times as fast as may be."""
         assert self.zone.max_speed is not None
         return self.speed / self.zone.max_speed
+
+
+def is_faster(speed: Array, most: float) -> Array:
+    """Whether speeds are above the greatest one that is allowed."""
+    return np.asarray(speed > most * (1.0 + _ROUNDING))
 
 
 def _told_apart(a: float, b: float) -> tuple[str, str]:
@@ -173,7 +180,10 @@ class ZoneWatch:
                 fast = np.linalg.norm(after[i] - before[i], axis=1) / (2.0 * _STEP)
                 for zone in self.limited:
                     assert zone.max_speed is not None
-                    if fast.max() > zone.max_speed and self.off(zone.name, corners) <= 0.0:
+                    if (
+                        is_faster(fast.max(), zone.max_speed)
+                        and self.off(zone.name, corners) <= 0.0
+                    ):
                         x, y, z = corners[int(fast.argmax())].tolist()
                         found = TooFast(zone, name, link, float(fast.max()), (x, y, z))
                         worst = found if worst is None else max(worst, found, key=lambda f: f.times)

@@ -238,6 +238,13 @@ def test_a_move_is_slow_enough_if_it_is_nowhere_too_fast(legs: _Legs, name: str)
 
 
 @pytest.mark.bullet
+def test_as_fast_as_may_be_is_not_too_fast(legs: _Legs) -> None:
+    """The door goes at 0.6 m/s, to the last digits."""
+    assert legs.says(legs.door, 0.6) == ("yes", "")
+    assert legs.answer(legs.door, 0.5999) == "no"
+
+
+@pytest.mark.bullet
 def test_of_a_move_that_is_too_fast_the_worst_is_told_and_what_would_do(legs: _Legs) -> None:
     fastest = 1000.0 * legs.fastest(legs.joint)
     answer, why = legs.says(legs.joint, fastest / 8000.0)
