@@ -105,11 +105,9 @@ def _seen(watch: ZoneWatch, track: Track, load: Load, t: float) -> TooFast | Non
 
 def _told(worst: TooFast) -> str:
     """What is most too fast at the instants that were looked at first, and how fast the move may be."""
-    percent = 100.0 / worst.times
-    shown = (
-        f"{math.floor(percent + 1e-6)}" if percent >= 10.0 else f"{math.floor(10.0 * percent) / 10.0:g}"
-    )
-    return f"{worst.words()}: the worst of {_FIRST + 1} instants; about {shown} % of this speed would do"
+    percent = 100.0 / worst.times + 1e-6
+    part = math.floor(percent) if percent >= 10.0 else math.floor(10.0 * percent) / 10.0
+    return f"{worst.words()}: the worst of {_FIRST + 1} instants; about {part:g} % of this speed would do"
 
 
 def _suspects(
