@@ -19,7 +19,8 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown

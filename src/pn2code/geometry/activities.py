@@ -8,22 +8,21 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 from typing import TypeVar
 
-import numpy as np
-
 from pn2code.base.frozen import frozen
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.contents import Contents, parts_of, spot
 from pn2code.geometry.legs import Leg, Planner, Stand
+from pn2code.geometry.moved_plates import MovedPlates
 from pn2code.geometry.pieces import ROUNDING
-from pn2code.geometry.prisms import PartEvent, Prism, near, surface, swept, whole
+from pn2code.geometry.prisms import PartEvent, Prism, surface
 from pn2code.geometry.shown import Shown
 from pn2code.robot.active_motion import turned_by
-from pn2code.robot.belts import line_of, told_to_run, until_stop
+from pn2code.robot.belts import told_to_run, until_stop
 from pn2code.robot.clamps import (
     Held,
     Near,
@@ -40,51 +39,10 @@ from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.part import Part, PartChange, PartFault
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
-from pn2code.robot.transforms import Array, describe, inverse, matrix_of
+from pn2code.robot.transforms import Array, describe, matrix_of
 
 _SLACKS = (0.0, ROUNDING, -ROUNDING)
 _Done = TypeVar("_Done")
-
-
-@frozen(eq=False)
-class Activity:
-    """One transition under way.
-
-    Args:
-        legs: each leg with the parts while it lasts.
-        end: where the arm stands afterwards; None: a device.
-        after: the parts afterwards.
-        fault: why it cannot be done to its end; in which leg: the last.
-        kinds: the kinds of parts that it handles.
-        is_part: the fault is about a part; command: what cannot be done then.
-        doubt: why it is not known whether an action can be done; "": it is.
-        turns: the turntables that turn in it.
-        may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
-            is taken away, they do.
-        part_events: when parts are handled in it, come to rest, or begin to move with a plate.
-        leans: the robots with parts in their tools on which clamps close in it: they must not move meanwhile.
-        halfway: of a device of which nothing moves, the parts from the beginning until it is done.
-    """
-
-    number: int
-    legs: tuple[tuple[Leg, Contents], ...]
-    end: Stand | None
-    after: Contents
-    fault: str = ""
-    kinds: frozenset[str] = frozenset()
-    is_part: bool = False
-    command: Command | None = None
-    doubt: str = ""
-    turns: frozenset[str] = frozenset()
-    may_run: frozenset[str] = frozenset()
-    part_events: tuple[PartEvent, ...] = ()
-    leans: frozenset[str] = frozenset()
-    halfway: tuple[Contents, ...] = ()
-
-    @property
-    def between(self) -> tuple[Contents, ...]:
-        """The parts at each moment."""
-        return (*(contents for _, contents in self.legs), *self.halfway, self.after)
 
 
 class Doing:
@@ -101,6 +59,7 @@ class Doing:
         self._standing: dict[tuple[int, int], Activity] = {}
         self.activities: list[Activity] = []
         self._with_tables = frozenset(r.name for r in cell.moving if r.carrying)
+        self.plates = MovedPlates(cell)
         self.start = self._kept(Parts(cell))
 
     def overlaps_at_start(self) -> list[tuple[Part, Trouble]]:
@@ -381,87 +340,6 @@ class Doing:
         says = f"`{doing.owner}` {handling.effect} `{change.part}`"
         return PartEvent(tuple(prisms), says, _point(frame[:3, 3]), frozenset(plates), goes)
 
-    def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
-        """Whether a place is so near to a turntable that it, or what stands on it, can come there when it moves."""
-        point, far = where
-        own = Ground.of(self._cell).plates[plate]
-        some = {spot(p): p for c in contents for p in c.parts.present.values()}
-        prisms = [*swept(own, (), whole(own)), *surface(own), *self._anywhere(plate, some.values())]
-        return near([Prism.around(point[None], far)], prisms)
-
-    def _anywhere(self, plate: str, some: Iterable[Part]) -> list[Prism]:
-        """Where a plate, as far as it can move, takes what stands on it, or on the belts of its line."""
-        ground = Ground.of(self._cell)
-        own = ground.plates[plate]
-        line = line_of(own.robot, own.axis)
-        riders = []
-        for part in some:
-            if part.plate in line:
-                to = inverse(own.T_world_axis) @ ground.plates[part.plate].T_world_axis
-                riders.append(ground.corners_of(part.kind.name, to @ part.frame))
-        if own.axis.belt is None or not riders:
-            return swept(own, riders, whole(own))[-len(riders) :] if riders else []
-        # Wherever on it, also from the beginning of a belt before it, and a little beyond its end.
-        rows = np.vstack(riders)
-        beyond = own.axis.upper + float(max(np.ptp(r[:, 0]) for r in riders))
-        ends = [(min(0.0, float(rows[:, 0].min())), beyond)]
-        ends += [(float(rows[:, i].min()), float(rows[:, i].max())) for i in (1, 2)]
-        return swept(own, [np.array(list(itertools.product(*ends)))], (0.0, 0.0))
-
-    def moves_first(self, a: Activity, plate: str) -> bool:
-        """Whether an activity moves a plate before it does anything to parts."""
-        for leg, contents in a.legs:
-            if leg.path is None or contents is not a.legs[0][1]:
-                return False
-            if self.is_moved(leg, plate):
-                return True
-        return False
-
-    def is_moved(self, leg: Leg, plate: str) -> bool:
-        """Whether a leg moves a plate."""
-        return leg.path is not None and plate in turned_by(self._cell.robot(leg.robot), leg.path)
-
-    def does(self, plate: str) -> str:
-        """What a plate does when it moves, for messages."""
-        return Ground.of(self._cell).plates[plate].does
-
-    def part_events_near(self, a: Activity, b: Activity) -> list[tuple[str, PartEvent]]:
-        """What of one activity may depend on how far plates are that another one moves: the plate, and what."""
-        out = []
-        ground = Ground.of(self._cell)
-        for plate in sorted(a.turns | a.may_run) if b.part_events else ():
-            own = ground.plates[plate]
-            index = own.robot.index(own.axis.name)
-            # Each with the plate on its way, in the end where it stays, ...
-            ways = [(c, _way(leg, index)) for leg, c in a.legs if leg.robot == own.robot.name]
-            is_moved = any(way[0] != way[1] for _, way in ways)
-            if is_moved and a.end is not None:
-                last = float(a.end.q[index])
-                ways.append((a.after, (last, last)))
-            known: dict[str, Part] = {}
-            riders: list[Prism] = []
-            plates: list[Prism] = []
-            for contents, way in ways:
-                on = contents.parts.riders(plate)
-                shapes = [ground.corners_of(p.kind.name, p.frame) for p in on]
-                prisms = swept(own, shapes, way)
-                plates += prisms[: len(prisms) - len(on)]
-                riders += prisms[len(prisms) - len(on) :]
-                known |= {spot(p): p for p in on}
-            # ... and what others put there meanwhile, or what waits, anywhere.
-            more = (*a.between, *b.between)
-            some = {spot(p): p for c in more for p in c.parts.present.values()}
-            if is_moved:
-                some = {key: p for key, p in some.items() if key not in known and p.plate == plate}
-            else:
-                plates += swept(own, (), whole(own))
-            riders += self._anywhere(plate, some.values())
-            for event in b.part_events:
-                prisms = [*riders, *plates, *(surface(own) if event.goes else ())]
-                if near(event.prisms, prisms) or near(event.surfaces, riders):
-                    out.append((plate, event))
-        return out
-
     def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
         """That a device takes a part along which a clamp of its own holds then; "": it does not."""
         if not own.axes.clamps:
@@ -602,14 +480,6 @@ def _tried(
 def _point(at: Array) -> tuple[float, float, float]:
     x, y, z = map(float, at)
     return x, y, z
-
-
-def _way(leg: Leg, axis: int) -> tuple[float, float]:
-    """From where to where an axis goes."""
-    path = leg.path
-    if path is None:
-        return float(leg.start.q[axis]), float(leg.start.q[axis])
-    return float(path.q(0.0)[axis]), float(path.q(path.duration)[axis])
 
 
 def _nearly(what: str) -> str:

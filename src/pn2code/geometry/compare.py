@@ -21,7 +21,7 @@ import numpy as np
 
 from pn2code.base.conditioning import MOST_CONDITION
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.ahead import Ahead
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart

@@ -18,7 +18,8 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import SensorConfig
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.contents import Contents, Load, parts_of, spot
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.in_zones import InZones
@@ -170,7 +171,7 @@ class Seeing:
         around = max((k.tolerance for k in self._cell.parts.values()), default=0.0) + ROUNDING
         where = (self._place(sensor), around)
         contents = (scene.contents, *other.between)
-        return any(self._doing.within(plate, where, contents) for plate in plates)
+        return any(self._doing.plates.within(plate, where, contents) for plate in plates)
 
     # --- zones and axes --------------------------------------------------------------------------
 

@@ -10,7 +10,8 @@ import pytest
 from tools.geometry.pairs import facing, moves
 
 from pn2code.geometry import ahead
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.ahead import Ahead
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison

@@ -189,7 +189,7 @@ def test_handling_beside_a_turntable_that_turns_is_told_apart() -> None:
     contents = turning.between
     for x, expected in ((1.7, True), (1.9, True), (3.0, False)):
         where = (matrix_of(Pose(x, 0.6, 0.5, 0.0, 0.0, 0.0))[:3, 3], 0.3)
-        assert doing.within("robot/plate", where, contents) is expected
+        assert doing.plates.within("robot/plate", where, contents) is expected
 
 
 @pytest.mark.bullet
@@ -269,5 +269,5 @@ def test_a_part_on_a_lift_is_swept_as_that_moves(request: pytest.FixtureRequest)
     assert (moved(0.3), moved(0.4)) == ("clear", "touch")
     near = (matrix_of(Pose(1.2, -1.3, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
     far = (matrix_of(Pose(1.2, -0.4, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
-    seen = [doing.within("elevator/platform", x, (doing.start,)) for x in (near, far)]
+    seen = [doing.plates.within("elevator/platform", x, (doing.start,)) for x in (near, far)]
     assert seen == [True, False]

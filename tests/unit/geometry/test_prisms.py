@@ -14,7 +14,8 @@ import pytest
 from helpers.belt_cell import TOML
 from helpers.robot_cells import nowhere
 from pn2code.diagnostics import Diagnostics
-from pn2code.geometry.activities import Activity, Doing
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.activity import Activity
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.prisms import Prism
 from pn2code.robot.commands import Along, Command, Handling, MoveExternal, ToolAction
@@ -57,7 +58,9 @@ def test_a_belt_has_nothing_to_do_with_what_stands_on_a_turntable_elsewhere() ->
     runs, turns = does(doing, "feeder", FEED, RUN), does(doing, "table", TURN)
     (ends,) = (m for m in runs.part_events if m.goes == "onto")
     assert ends.point[:2] == pytest.approx((1.5, -0.6))
-    assert not doing.part_events_near(turns, runs) and not doing.part_events_near(runs, turns)
+    assert not doing.plates.part_events_near(turns, runs) and not doing.plates.part_events_near(
+        runs, turns
+    )
 
 
 @pytest.mark.parametrize(("x", "is_near"), [(1.903, True), (1.91, False)])
@@ -65,16 +68,20 @@ def test_beside_a_belt_it_counts_how_far_the_turntable_comes(x: float, is_near: 
     """The box at the stop of the belt comes to 1.6, the table to 0.3 from x; what is within 6 mm may carry."""
     doing = doing_of(x, -0.6)
     runs, turns = does(doing, "feeder", FEED, RUN), does(doing, "table", TURN)
-    found = doing.part_events_near(turns, runs)
+    found = doing.plates.part_events_near(turns, runs)
     assert bool(found) is is_near
-    assert is_near or not doing.part_events_near(runs, turns)
+    assert is_near or not doing.plates.part_events_near(runs, turns)
 
 
 def test_who_puts_a_part_onto_a_plate_that_turns() -> None:
     doing = doing_of(3.0, 0.0, boxes=False)
     puts, turns = does(doing, "hand", PUT), does(doing, "table", TURN)
-    ((plate, event),) = doing.part_events_near(turns, puts)
-    assert plate == "table/plate" and event.plates == {plate} and doing.moves_first(turns, plate)
+    ((plate, event),) = doing.plates.part_events_near(turns, puts)
+    assert (
+        plate == "table/plate"
+        and event.plates == {plate}
+        and doing.plates.moves_first(turns, plate)
+    )
     assert (event.says, event.goes) == ("`hand` creates `box.1`", "on")
 
 
@@ -83,7 +90,7 @@ def test_what_passes_over_one_another_with_room_between_is_apart() -> None:
     for z, is_near in ((0.70, False), (0.673, True)):
         doing = doing_of(1.5, -0.6, boxes=False, z=z)
         runs, turns = does(doing, "feeder", FEED, RUN), does(doing, "table", TURN)
-        assert bool(doing.part_events_near(turns, runs)) is is_near, z
+        assert bool(doing.plates.part_events_near(turns, runs)) is is_near, z
 
 
 def test_rooms_are_near_if_something_in_them_is() -> None:

@@ -168,7 +168,7 @@ def test_whoever_handles_parts_near_a_belt_that_runs_is_seen() -> None:
         ((1.5, -2.4), False),
     ):
         where = np.array([x, y, 0.6]), 0.3
-        assert doing.within("feeder/belt", where, [doing.start]) is near, (x, y)
+        assert doing.plates.within("feeder/belt", where, [doing.start]) is near, (x, y)
 
 
 def test_what_is_wrong_with_a_belt_is_said() -> None:
@@ -412,10 +412,10 @@ def test_whoever_handles_parts_near_a_line_that_runs_is_seen() -> None:
     cell = lined((0.2,))
     doing = Doing(Planner(cell), cell)
     for where, near in (((1.62, -0.7, 0.6), True), ((1.9, -0.7, 0.6), False)):
-        assert doing.within("feeder/away", (np.array(where), 0.05), [doing.start]) is near
+        assert doing.plates.within("feeder/away", (np.array(where), 0.05), [doing.start]) is near
     empty = Doing(Planner(lined(())), lined(()))
     above = np.array([1.62, -0.7, 0.6]), 0.05
-    assert not empty.within("feeder/away", above, [empty.start])
+    assert not empty.plates.within("feeder/away", above, [empty.start])
 
 
 @pytest.mark.parametrize(
