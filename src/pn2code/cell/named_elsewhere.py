@@ -152,16 +152,23 @@ def seen_by(
     where = r.number(table, at, SENSOR["at"], 0.0) if "at" in table else 0.0
     expect_named(r, data, part, (*at, "part"), "parts")
     device, dot, axis = sees.partition(".")
-    # How far a belt has run says nothing of where it is.
-    is_axis = bool(dot) and axes_of_all(data).get(device, {}).get(axis, "belt") != "belt"
+    kind = axes_of_all(data).get(device, {}).get(axis, "")
+    is_axis = bool(dot) and kind not in ("", "belt")
     zones = table_of(_layered(data, "zones"))
     if dot and not is_axis:
         known = [f"{x}.{a}" for x in table_of(data.get("devices")) for a in axes_of_all(data)[x]]
         r.d.error(
             codes.CELL_VALUE,
-            f"`sees` names `{sees}`, but no device has such an axis",
+            f"`sees` names `{sees}`, but "
+            + (
+                "that is a belt: how far it has run says nothing of where it is"
+                if kind
+                else "no device has such an axis"
+            ),
             r.at(*at, "sees"),
-            hint=did_you_mean(sees, known) or "give DEVICE.AXIS, of `[devices.DEVICE.axes.AXIS]`",
+            hint="name a place of `[places]` on it, where a part is seen"
+            if kind
+            else did_you_mean(sees, known) or "give DEVICE.AXIS, of `[devices.DEVICE.axes.AXIS]`",
         )
     elif not dot and sees not in zones:
         expect_named(r, data, sees, (*at, "sees"), "places")

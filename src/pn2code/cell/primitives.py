@@ -144,7 +144,15 @@ class _Checker:
                     hint=f"remove `speed`, or let the function take the {what} alone",
                 )
             # Primitives have types of functions.
-            elif primitive.command == "wait" and symbol.type.argument == UNIT:  # type: ignore[union-attr]
+            elif primitive.command == "wait" and symbol.type.argument != UNIT:  # type: ignore[union-attr]
+                if primitive.duration_s:
+                    self.d.error(
+                        codes.PRIMITIVE_ENTRY,
+                        f"`{name}` takes a number of seconds, and the entry has one, too",
+                        self.config.locator.origin("primitives", name, "duration_s"),
+                        hint="remove `duration_s`, or let the function take nothing",
+                    )
+            elif primitive.command == "wait":
                 if not primitive.duration_s:
                     self.d.error(
                         codes.PRIMITIVE_ENTRY,

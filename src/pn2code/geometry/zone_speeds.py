@@ -10,6 +10,8 @@ the move as it is planned.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from pn2code.geometry.answers import Verdict
@@ -19,7 +21,7 @@ from pn2code.geometry.tracks import Knots, Track
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.trajectories import JointTrajectory, LinearTrajectory
 from pn2code.robot.transforms import Array
-from pn2code.robot.zones import ZoneWatch
+from pn2code.robot.zones import TooFast, ZoneWatch, is_faster
 
 _INSTANTS = 400
 """At which the law of a move is looked at; half way is one of them: there it is fastest, unless it is uneven."""
@@ -60,9 +62,10 @@ def slow_enough(watch: ZoneWatch, track: Track, load: Load) -> tuple[Verdict, st
         return "yes", ""
     if not path.duration:
         return "yes", ""
-    for t in np.linspace(0.0, path.duration, _FIRST + 1).tolist():
-        if why := _seen(watch, track, load, t):
-            return "no", why
+    instants = np.linspace(0.0, path.duration, _FIRST + 1).tolist()
+    seen = [x for t in instants if (x := _seen(watch, track, load, t)) is not None]
+    if seen:
+        return "no", _told(max(seen, key=lambda x: x.times))
     track.begin()
     pace = _Pace(path)
     edges = np.linspace(0.0, 1.0, 17)
@@ -82,8 +85,8 @@ def slow_enough(watch: ZoneWatch, track: Track, load: Load) -> tuple[Verdict, st
         for i, name in suspects.items():
             a, b = pieces[i].tolist()
             middle = (a + b) / 2.0
-            if why := _seen(watch, track, load, pace.time(middle)):
-                return "no", why
+            if (found := _seen(watch, track, load, pace.time(middle))) is not None:
+                return "no", found.words()
             if knots.spread[i].max() <= RESOLUTION or b - a < _SHORTEST:
                 unknown = f"`{name}` is so nearly too fast in a zone, or so nearly in it, that it cannot be told"
             else:
@@ -93,12 +96,18 @@ def slow_enough(watch: ZoneWatch, track: Track, load: Load) -> tuple[Verdict, st
     return ("unknown", unknown) if unknown else ("yes", "")
 
 
-def _seen(watch: ZoneWatch, track: Track, load: Load, t: float) -> str:
-    """What is too fast at an instant of the move, as a run looks at it; "": nothing."""
+def _seen(watch: ZoneWatch, track: Track, load: Load, t: float) -> TooFast | None:
+    """What is too fast at an instant of the move, as a run looks at it; of several the worst."""
     path = track.leg.path
     assert path is not None
-    found = watch.too_fast({track.robot: path.q(t)}, {track.robot: path.qd(t)}, load)
-    return "" if found is None else found.words()
+    return watch.too_fast({track.robot: path.q(t)}, {track.robot: path.qd(t)}, load)
+
+
+def _told(worst: TooFast) -> str:
+    """What is most too fast at the instants that were looked at first, and how fast the move may be."""
+    percent = 100.0 / worst.times + 1e-6
+    part = math.floor(percent) if percent >= 10.0 else math.floor(10.0 * percent) / 10.0
+    return f"{worst.words()}: the worst of {_FIRST + 1} instants; about {part:g} % of this speed would do"
 
 
 def _suspects(
@@ -111,7 +120,7 @@ def _suspects(
     out: dict[int, str] = {}
     for zone in watch.limited:
         assert zone.max_speed is not None
-        for i, j in zip(*np.nonzero(fast > zone.max_speed), strict=True):
+        for i, j in zip(*np.nonzero(is_faster(fast, zone.max_speed)), strict=True):
             if i not in out and watch.off(zone.name, corners[i, j]) <= knots.spread[i, j]:
                 out[int(i)] = track.links[j].name
     return out

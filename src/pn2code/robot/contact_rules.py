@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import glob
+import re
 from collections.abc import Iterator, Mapping
 
 from pn2code.diagnostics.suggestions import did_you_mean
@@ -20,7 +21,8 @@ def read_rule(t: Table, things: list[str]) -> ContactRule:
     t.done()
     for key, name in (("a", rule.a), ("b", rule.b)):
         thing = name.split("/")[0]
-        if name and not any(fnmatch.fnmatchcase(x, thing) for x in things):
+        meant = (thing, re.sub(r"\.\d+$", ".1", thing))  # parts are numbered as they come
+        if name and not any(fnmatch.fnmatchcase(x, m) for x in things for m in meant):
             near = did_you_mean(thing, things, f"known are {', '.join(f'`{x}`' for x in things)}")
             t.wrong(key, "a part of a robot or of the scene", near)
     return rule

@@ -165,7 +165,8 @@ class RobotExecutor:
         """Raises MotionFault, with robot and pose, when no joint position puts the TCP where a move leads.
 
         Of a line or an arc only its end is looked at, in the branch of joint moves; nothing of increments, which begin
-        wherever the tool is. Of a pose that external axes decide on as well nothing is known, either (`depends`).
+        wherever the tool is. Of a pose that external axes decide on as well (`depends`) only how the tool is turned,
+        which tracks do not change.
         """
         meant = self.told(command)
         assert isinstance(meant, Move)
@@ -188,6 +189,8 @@ class RobotExecutor:
                     q = self._towards(command.along)
                     if command.frame != "tool" and not self.depends(command):
                         self._found(command, q)
+                    elif command.frame != "tool" and command.frame not in self.robot.turning:
+                        self._expect_turn(command, q)
         except MotionFault as fault:
             raise self._named(fault, told) from None
 
@@ -228,6 +231,14 @@ class RobotExecutor:
             tip = self._tcp(command)[1] if command.tcp else None
             raise unreachable(self.robot, target, q, angle, command.target, tip)
         return found.q, target
+
+    def _expect_turn(self, command: MoveJoint | MoveLinear | MoveCircular, q: Array) -> None:
+        """Raises MotionFault where the arm cannot turn its tool so, wherever tracks have carried it."""
+        k = self.robot.kinematics
+        target = self._of_tool(self._in_base(command.target, command, q), command)
+        arm = inverse(k.T_base_arm(q)) if isinstance(k, WithAxes) else np.eye(4)
+        if refused := k.alone.refused(arm @ target):
+            raise MotionFault("unreachable", refused)
 
     def _arm_angle(self, command: MoveJoint | MoveLinear | MoveCircular) -> float | None:
         """What a move says of the arm angle; None: nothing."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.contact_rules import clamping, gripping, read_rule, tips_on_panel
 from pn2code.robot.parts_table import PartKind
@@ -35,12 +34,12 @@ def read_scene(
     plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
     contacts += [*gripping(robots, kinds, objects, plates), *clamping(devices, kinds)]
     contacts += coupling(robots, tools)
-    _expect_holders(t, tools, objects)
     _named_once(
         t, objects, {**dict.fromkeys(kinds, "kind of parts"), **dict.fromkeys(tools, "tool")}
     )
     things = [
         *names,
+        *(f"{r.name}_{what}" for r in robots for what in ("pedestal", "rail")),
         *(r.name for r in devices),
         "panel",
         "floor",
@@ -59,22 +58,6 @@ def read_scene(
     )
     t.done()
     return out
-
-
-def _expect_holders(
-    t: Table, tools: Mapping[str, ToolKind], objects: tuple[SceneObject, ...]
-) -> None:
-    """What holds tools is among the objects of the scene."""
-    known = [o.name for o in objects]
-    for name, kind in tools.items():
-        for holder in kind.holders:
-            if holder not in known:
-                t.d.error(
-                    codes.ROBOT_VALUE,
-                    f"`tools.{name}.holders` names `{holder}`, which is no object of the scene",
-                    t.at(),
-                    hint=did_you_mean(holder, known, "it names `[scene] objects`"),
-                )
 
 
 def _panel(t: Table) -> PanelConfig:

@@ -10,7 +10,7 @@ beside boxes, cylinders and meshes; nothing here knows what the cell is for.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,12 +25,13 @@ from pn2code.robot.collision_meshes import unread_meshes
 from pn2code.robot.devices import Around, read_devices
 from pn2code.robot.frames import Frames, read_frames
 from pn2code.robot.hulls import Hull
+from pn2code.robot.names_in_contacts import expect_things
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
 from pn2code.robot.read_robot import read_robot
 from pn2code.robot.read_scene import read_scene
 from pn2code.robot.robot_cell import CellRobot, MotionConfig, RobotCell
 from pn2code.robot.table import Locate, Table
-from pn2code.robot.tools_table import ToolKind, expect_somewhere, read_tools
+from pn2code.robot.tools_table import ToolKind, expect_holders, expect_somewhere, read_tools
 from pn2code.robot.zones import unread
 from pn2code.robot.zones_table import read_zones
 
@@ -74,6 +75,7 @@ def load(
         _uncoupled(primitives),
     )
     plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
+    plates += _axes_of_others(geometry.get("robots", {}), [r.name for r in robots])
     frames = read_frames(table("frames", None), plates)
     named = dict(table("robots", None).named(ROBOT))
     taken = _said_of(primitives, "takes")
@@ -82,11 +84,13 @@ def load(
     around = Around(folder, places, max((h.radius for h in hulls), default=0.0))
     devices = read_devices(table("devices", None), around)
     scene = read_scene(table("scene", SCENE), robots, devices, names, (kinds, tools), folder)
+    expect_holders(table("tools", None), tools, scene.objects)
     zones = read_zones(table("zones", None))
     _expect_own_names(table("tools", None), tools, robots)
     if len(d.errors) != before:
         return None
     cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones, tools)
+    expect_things(table("scene", SCENE), cell)
     trees = [r.arm.urdf for r in robots]
     trees += [t.urdf for t in (*(r.tool for r in robots), *(k.tool for k in tools.values())) if t]
     for path, says in unread_meshes(trees):
@@ -115,6 +119,14 @@ def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
         if owner == robot.name
     }
     return replace(robot, turning=turning) if turning else robot
+
+
+def _axes_of_others(said: object, read: Collection[str]) -> Iterator[str]:
+    """The external axes of robots that could not be read: frames that name one of them are no second mistake."""
+    for name, robot in said.items() if isinstance(said, Mapping) else ():
+        axes = robot.get("axes") if isinstance(robot, Mapping) else None
+        if name not in read and isinstance(axes, Mapping):
+            yield from (f"{name}.{axis}" for axis in axes)
 
 
 def _said_of(primitives: object, key: str) -> tuple[str, ...]:

@@ -56,7 +56,7 @@ class Table:
         """Report that the value of a key is not what is expected (in words)."""
         self.d.error(
             codes.ROBOT_VALUE,
-            f"{self._words(key)} is `{self.data[key]}`, but {expected} is expected",
+            f"{self._words(key)} is `{self.data[key]}`, but {expected} {_are(expected)} expected",
             self.at(key),
             hint=hint,
         )
@@ -225,6 +225,10 @@ class Table:
                     self.at(key),
                     hint=did_you_mean(key, known, f"known keys: {', '.join(sorted(known))}"),
                 )
+
+
+def _are(expected: str) -> str:
+    return "are" if expected.startswith("three ") else "is"
 
 
 def _expected(key: Key) -> str:

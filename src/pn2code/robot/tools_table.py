@@ -26,6 +26,7 @@ from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.model import Tool, find_tool
 from pn2code.robot.parts_table import PartKind
+from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.table import Table
 from pn2code.robot.transforms import Array
 
@@ -98,6 +99,16 @@ def read_tools(
         if tool is not None:
             out[name] = ToolKind(name, tool, rack, takes, does, tolerance, angle, holders)
     return out
+
+
+def expect_holders(t: Table, tools: Mapping[str, ToolKind], objects: Sequence[SceneObject]) -> None:
+    """What holds tools is among the objects of the scene. `t`: the table of the tools."""
+    known = [o.name for o in objects]
+    for name, kind in tools.items():
+        for holder in kind.holders:
+            if holder not in known:
+                hint = did_you_mean(holder, known, "it names `[scene] objects`")
+                t.inside(name).wrong_name("holders", holder, "object of the scene", hint)
 
 
 def expect_somewhere(

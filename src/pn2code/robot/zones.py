@@ -30,6 +30,8 @@ from pn2code.robot.zones_table import Zone
 
 _STEP = 1e-6
 """s: over which places are compared to know how fast they change."""
+_ROUNDING = 1e-6
+"""Of a speed: what is commanded as fast as may be in a zone is not too fast because numbers are rounded."""
 
 
 @frozen(eq=False)
@@ -54,10 +56,33 @@ class TooFast:
     def words(self) -> str:
         """For people."""
         at = ", ".join(f"{1000.0 * v:.0f}" for v in self.point)
+        most = self.zone.max_speed
+        assert most is not None
+        speed, allowed = _told_apart(1000.0 * self.speed, 1000.0 * most)
         return (
-            f"`{self.link}` is {1000.0 * self.speed:.1f} mm/s fast at {at} mm, in zone `{self.zone.name}`, where "
-            f"{1000.0 * (self.zone.max_speed or 0.0):.1f} mm/s are allowed"
+            f"`{self.link}` is {speed} mm/s fast at {at} mm, in zone `{self.zone.name}`, where "
+            f"{allowed} mm/s are allowed"
         )
+
+    @property
+    def times(self) -> float:
+        """So many times as fast as may be."""
+        assert self.zone.max_speed is not None
+        return self.speed / self.zone.max_speed
+
+
+def is_faster(speed: Array, most: float) -> Array:
+    """Whether speeds are above the greatest one that is allowed."""
+    return np.asarray(speed > most * (1.0 + _ROUNDING))
+
+
+def _told_apart(a: float, b: float) -> tuple[str, str]:
+    """Two numbers with as many digits as it takes to see that they differ."""
+    for digits in (1, 3, 6, 9):
+        shown = f"{a:.{digits}f}", f"{b:.{digits}f}"
+        if shown[0] != shown[1]:
+            break
+    return shown
 
 
 class ZoneWatch:
@@ -137,8 +162,12 @@ class ZoneWatch:
     def too_fast(
         self, joints: Mapping[str, Array], speeds: Mapping[str, Array], parts: Iterable[Part]
     ) -> TooFast | None:
-        """What is faster in a zone than may be there: the fastest point of it. `speeds`: rad/s, m/s."""
+        """What is faster in a zone than may be there, with its fastest point; of several what is so most times.
+
+        `speeds`: rad/s, m/s.
+        """
         parts = tuple(parts)
+        worst: TooFast | None = None
         for name, q in joints.items():
             qd = speeds.get(name)
             if qd is None or not np.any(qd):
@@ -151,10 +180,14 @@ class ZoneWatch:
                 fast = np.linalg.norm(after[i] - before[i], axis=1) / (2.0 * _STEP)
                 for zone in self.limited:
                     assert zone.max_speed is not None
-                    if fast.max() > zone.max_speed and self.off(zone.name, corners) <= 0.0:
+                    if (
+                        is_faster(fast.max(), zone.max_speed)
+                        and self.off(zone.name, corners) <= 0.0
+                    ):
                         x, y, z = corners[int(fast.argmax())].tolist()
-                        return TooFast(zone, name, link, float(fast.max()), (x, y, z))
-        return None
+                        found = TooFast(zone, name, link, float(fast.max()), (x, y, z))
+                        worst = found if worst is None else max(worst, found, key=lambda f: f.times)
+        return worst
 
 
 def _of_kind(kind: PartKind | ToolKind) -> Iterator[Hull | None]:

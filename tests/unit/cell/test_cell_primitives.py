@@ -75,6 +75,16 @@ def test_entries(what: str, tmp_path: Path) -> None:
     assert any(c == code and words in m for c, m in found), found
 
 
+def test_a_wait_has_its_seconds_once(tmp_path: Path) -> None:
+    """What stood in the entry would have no effect."""
+    net = changed(NET, "fun moveHome () = ();", "fun moveHome (s : real) = ();")
+    net = net.replace("moveHome ()", "moveHome 1.0")
+    toml = changed(TOML, '"move_home"', '"wait", duration_s = 2.0')
+    assert [m for _, m in errors(tmp_path, net, toml)] == [
+        "`moveHome` takes a number of seconds, and the entry has one, too"
+    ]
+
+
 def test_a_misspelt_entry_is_told_the_function(tmp_path: Path) -> None:
     found = said(tmp_path, toml=changed(TOML, "moveHome = {", "moveHom = {"))
     (entry,) = (x for x in found if x.code == "primitive-entry")

@@ -244,6 +244,13 @@ def test_wildcard_has_advice() -> None:
     assert "use a variable" in d.items[0].hint
 
 
+def test_a_negative_number_behind_the_sign_of_equality_has_advice() -> None:
+    d = Diagnostics()
+    assert parse_expression(source("{y=~1.0}"), d) is None
+    assert d.items[0].message == "unexpected `=~`, `=` expected"
+    assert "put a blank between them, `= (~5)`" in d.items[0].hint
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

@@ -303,7 +303,7 @@ PLATE = ("robots", "left", "axes", "plate")
     [
         (changed(RAIL, to=-2.0), "but a number above `from` is expected"),
         (changed(RAIL, home=4.0), "external axis `rail` of robot `left` begins at 4 m, outside -1"),
-        (changed(RAIL, direction=[0.0, 0.0, 0.0]), "but three numbers, not all of them 0"),
+        (changed(RAIL, direction=[0.0, 0.0, 0.0]), "but three numbers, not all of them 0 are expected"),
         (changed(RAIL, radius=0.5), "unknown key `radius`"),
         (changed(RAIL, kind="wheel"), "is `wheel`, but `track` or `turntable` is expected"),
         (changed(PLATE, direction=[1, 0, 0]), "unknown key `direction`"),
@@ -316,6 +316,11 @@ def test_axes_that_cannot_be(data: dict[str, Any], message: str) -> None:
     found, d = loaded(data)
     assert found is None
     assert any(message in e.message for e in d.errors), [e.message for e in d.errors]
+
+
+def test_a_frame_on_the_plate_of_a_robot_that_is_wrong_is_no_second_mistake() -> None:
+    _, d = loaded(changed(("robots", "left"), tool="torsch.urdf"))
+    assert [e.code for e in d.errors] == ["robot-tool"], [e.message for e in d.errors]
 
 
 def test_whether_a_plate_turns_meanwhile_is_worked_out_once(

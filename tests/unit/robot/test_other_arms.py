@@ -348,6 +348,16 @@ def test_poses_that_cannot_be_had_say_why(name: str) -> None:
         arm.begin(MoveJoint(down(7.0, 0.0, 0.3)), 0.0)
 
 
+def test_a_tilted_pose_cannot_be_had_wherever_a_lift_stands() -> None:
+    """Whether the place is within reach depends on the lift, which the move does not tell; the tilt does not."""
+    lift = {"direction": [0.0, 0.0, 1.0], "from": 0.0, "to": 0.3}
+    arm = executor("cobra_s600", axes={"lift": lift})
+    arm.reach(MoveLinear(down(0.4, 0.2, 7.0)))
+    tilted = Pose(0.4, 0.2, 0.5, math.pi - math.radians(5.0), 0.0, 0.0)
+    with pytest.raises(MotionFault, match="it tilts the tool by 5 deg"):
+        arm.reach(MoveLinear(tilted))
+
+
 def test_joint_positions_of_slides_are_in_mm() -> None:
     arm = executor("cobra_s600")
     told = tuple(math.radians(v) for v in (10.0, 20.0, 120.0, 30.0))

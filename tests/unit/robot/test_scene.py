@@ -214,7 +214,7 @@ def test_objects_of_all_kinds(tmp_path):
             {"name": "post", "kind": "cylinder", "radius": 0.1, "length": 2.0, "colour": [1, 0, 0]},
             {"name": "part", "kind": "mesh", "file": "cube.obj", "scale": 0.1},
         ],
-        "contacts": [{"a": "*/link_6", "b": "table", "depth": 0.001}],
+        "contacts": [{"a": "post", "b": "table", "depth": 0.001}],
     }
     cell = load({"scene": scene}, tmp_path, nowhere, d)
     assert cell is not None, list(d)

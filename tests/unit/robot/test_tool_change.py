@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from helpers.tool_cell import TOML, placed
+from helpers.tool_cell import DRIVER, TOML, placed
 from pn2code.arms import Arms
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.replay.arrays import unpacked
 from pn2code.replay.cell import at_start, describe, put, tool_in_use
 from pn2code.robot.bullet import BulletBackend
@@ -31,6 +33,7 @@ from pn2code.robot.motion_fault import MotionFault
 from pn2code.robot.part import Part, PartFault, carried_to
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.scene import load
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.robot.zones import ZoneWatch
 from pn2code.run.record import PartRecord
@@ -395,6 +398,14 @@ def test_sweeps_measure_the_tool_and_the_part_in_it(cell: RobotCell) -> None:
 )  # fmt: skip
 def test_mistakes_are_told(tmp_path: Path, old: str, new: str, says: str) -> None:
     assert any(says in m for m in wrong(tmp_path, old, new)), wrong(tmp_path, old, new)
+
+
+def test_who_holds_what_is_not_there_is_told_where_it_says_so(tmp_path: Path) -> None:
+    (tmp_path / "driver.urdf").write_text(DRIVER, encoding="utf-8")
+    data = tomllib.loads(TOML.replace('holders = ["rack"]', 'holders = ["rck"]', 1))
+    d = Diagnostics()
+    load(data, tmp_path, lambda *path: Origin(".".join(map(str, path))), d)
+    assert [e.origin for e in d.errors] == [Origin("tools.gripper.holders")]
 
 
 def test_one_tool_on_two_robots(tmp_path: Path) -> None:

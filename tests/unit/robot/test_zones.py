@@ -159,6 +159,27 @@ def test_what_is_too_fast_is_told_with_its_speed() -> None:
     assert watch.too_fast({"mill": OPEN}, {"mill": np.array([0.52, 0.0, 0.0])}, ()) is None
 
 
+def test_of_several_the_worst_is_told() -> None:
+    """The door in `front`, where 0.5 m/s are allowed, and the arm, which comes to be twice too fast."""
+    watch = ZoneWatch(CELL)
+    q = at(700, 0, 1000)
+    fast = np.zeros(6)
+    fast[0] = 2.0
+    alone = watch.too_fast({"arm": q}, {"arm": fast}, ())
+    assert alone is not None
+    every = [x for x, _ in watch.placed("arm", q, ())]
+    assert alone.link in every and alone.times == pytest.approx(alone.speed / 0.5)
+    door = np.array([0.5001, 0.0, 0.0])
+    both = watch.too_fast({"mill": SHUT, "arm": q}, {"mill": door, "arm": fast}, ())
+    assert both is not None and both.link == alone.link
+
+
+def test_the_speed_that_is_told_is_seen_to_be_above_what_is_allowed() -> None:
+    found = ZoneWatch(CELL).too_fast({"mill": SHUT}, {"mill": np.array([0.50001, 0.0, 0.0])}, ())
+    assert found is not None
+    assert "is 500.010 mm/s fast" in found.words() and "where 500.000 mm/s are" in found.words()
+
+
 # --- whole ways ----------------------------------------------------------------------------------
 
 
@@ -179,9 +200,12 @@ class _Legs:
 
         self.compared = Comparison(CELL, self.planner, Shown(self.backend))
 
-    def answer(self, leg: Leg, most: float) -> str:
+    def says(self, leg: Leg, most: float) -> tuple[str, str]:
         _, track = self.compared._track(leg, ())
-        return slow_enough(ZoneWatch(cell_of(most)), track, ())[0]
+        return slow_enough(ZoneWatch(cell_of(most)), track, ())
+
+    def answer(self, leg: Leg, most: float) -> str:
+        return self.says(leg, most)[0]
 
     def fastest(self, leg: Leg) -> float:
         """In the zone, at samples."""
@@ -214,6 +238,23 @@ def test_a_move_is_slow_enough_if_it_is_nowhere_too_fast(legs: _Legs, name: str)
 
 
 @pytest.mark.bullet
+def test_as_fast_as_may_be_is_not_too_fast(legs: _Legs) -> None:
+    """The door goes at 0.6 m/s, to the last digits."""
+    assert legs.says(legs.door, 0.6) == ("yes", "")
+    assert legs.answer(legs.door, 0.5999) == "no"
+
+
+@pytest.mark.bullet
+def test_of_a_move_that_is_too_fast_the_worst_is_told_and_what_would_do(legs: _Legs) -> None:
+    fastest = 1000.0 * legs.fastest(legs.joint)
+    answer, why = legs.says(legs.joint, fastest / 8000.0)
+    assert answer == "no" and why.endswith(
+        "mm/s are allowed: the worst of 65 instants; about 12 % of this speed would do"
+    )
+    assert float(why.split(" is ")[1].split(" mm/s")[0]) == pytest.approx(fastest, rel=0.02)
+
+
+@pytest.mark.bullet
 def test_speeds_in_pieces_are_bounds(legs: _Legs) -> None:
     for leg in (legs.joint, legs.line, legs.door):
         _, track = legs.compared._track(leg, ())
@@ -242,9 +283,22 @@ def test_an_axis_is_at_a_position() -> None:
     assert not mill.is_at("vice", np.array([0.0, 0.06, 0.06]), 0.06)
 
 
+BELT = """
+[devices.mill.axes.belt]
+kind = "belt"
+pose = { x = 3.0, z = 0.5 }
+length = 1.0
+width = 0.2
+"""
+
+
 def test_what_a_sensor_sees_is_there(tmp_path: Path) -> None:
     for sensor, words in (
         ('sees = "mill.dor"\nat = 0.0', "`sees` names `mill.dor`, but no device has such an axis"),
+        (
+            f'sees = "mill.belt"\n{BELT}',
+            "`sees` names `mill.belt`, but that is a belt: how far it has run s",
+        ),
         ('sees = "mill.door"', "`sees` names axis `mill.door`, but not at which position"),
         ('sees = "inVice"\nat = 0.1', "`at` says where an axis is seen, but `sees` names none"),
         ('sees = "front"\npart = "blank"', "but `front` is no place"),

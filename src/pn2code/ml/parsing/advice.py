@@ -341,6 +341,8 @@ def syntax(
             return FOREIGN_OPERATORS["=>"]
         case "ID" if text in FOREIGN_OPERATORS:
             return FOREIGN_OPERATORS[text]
+        case "ID" if text.startswith("=") and (hint := adjacent_symbols(text, set())):
+            return hint
         case _ if start == "code" and not before:
             return "a code segment is written `input (..); output (..); action ..;`"
         case "$END":
