@@ -28,8 +28,6 @@ from pn2code.verdict.unfolded.askable import why_not
 
 PROPERTIES = 6
 MOST_NODES = 1_500
-SECONDS = 10.0
-"""For a net."""
 
 
 def main() -> int:
@@ -39,6 +37,7 @@ def main() -> int:
     )
     parser.add_argument("--nets", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=10.0, help="for a net")
     wanted = parser.parse_args()
     seen: Counter[str] = Counter()
     wrong = 0
@@ -55,7 +54,7 @@ def main() -> int:
             asked = gather(opened, texts, None, Diagnostics(), found=False)
             try:
                 for what in differences(
-                    opened, asked, folder, seen, most=MOST_NODES, seconds=SECONDS
+                    opened, asked, folder, seen, most=MOST_NODES, seconds=wanted.seconds
                 ):
                     wrong += 1
                     print(f"{seed}: {what}", flush=True)

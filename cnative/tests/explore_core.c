@@ -229,6 +229,38 @@ static void *insert_all(void *user)
     return NULL;
 }
 
+typedef struct watch {
+    const ex_store_t *store;
+    uint64_t used;
+    _Atomic bool is_over;
+} watch_t;
+
+/* As one that tells how far an exploration is does, also while others are in a pause. */
+static void *watch_used(void *user)
+{
+    watch_t *const watch = user;
+    while (!atomic_load(&watch->is_over)) {
+        check(atomic_load_explicit(&watch->store->used, memory_order_relaxed) == watch->used, "another number of keys");
+    }
+    return NULL;
+}
+
+static void try_watched(ex_store_t *store, uint64_t used)
+{
+    watch_t watch = { .store = store, .used = used };
+    pthread_t thread;
+    atomic_init(&watch.is_over, false);
+    atomic_store(&store->used, used);
+    check(pthread_create(&thread, NULL, watch_used, &watch) == 0, "no thread");
+    for (uint32_t i = 0U; i < 3U; i++) {
+        store->limit = 0U; /* as if it were full */
+        check(ex_store_grow(store, store->is_word ? s_word_widths : s_widths), "it does not grow");
+    }
+    atomic_store(&watch.is_over, true);
+    (void)pthread_join(thread, NULL);
+    check(count_slots(store) == used, "keys are lost");
+}
+
 static void try_threads_on(bool is_word)
 {
     const uint64_t count = 60000U;
@@ -282,6 +314,7 @@ static void try_threads_on(bool is_word)
         free(job[w].number);
         free(job[w].name);
     }
+    try_watched(&store, count);
     ex_store_free(&store);
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -136,6 +137,20 @@ def test_bounds(folder: Path) -> None:
     ]
     write(folder, "UpperBounds", *bounds)
     assert values(said(folder, "UpperBounds")) == {"a": "2", "b": "3"}
+
+
+def test_evidence_of_bounds(folder: Path) -> None:
+    """After the answers, in a file: no step raises p + q, which is 2 at first."""
+    write(folder, "UpperBounds", "<place-bound><place>q</place></place-bound>")
+    file = folder / "evidence.jsonl"
+    assert values(said(folder, "UpperBounds", "--evidence", str(file))) == {"a": "2"}
+    (row,) = map(json.loads, file.read_text().splitlines())
+    (case,) = row["certificate"]["cases"]
+    assert (row["name"], row["rests_on"]) == ("a", None)
+    assert case["if"] == [{"sum": {"q": -1}, "at_most": -3}]
+    w = case["weights"]
+    assert 0 <= -w["q"] == -w["p"] and "home" not in w
+    assert 2 * w["p"] == case["at_first"] > case["at_most"]
 
 
 def test_paths(folder: Path) -> None:

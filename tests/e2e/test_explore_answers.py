@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from helpers.explored import Explorers
+from helpers.netbuilder import flat
 from helpers.questions import Asked, Lts, ask, sources
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.limits import Reduction
@@ -336,3 +337,20 @@ def test_what_is_in_no_marking_cannot_be_asked() -> None:
     for condition in ("look () = 0", "INT.ran () = 0", "step () = IntInf.fromInt 0"):
         with pytest.raises(AssertionError, match="looks at more than the marking"):
             sources(text, [condition])
+
+
+def test_before_the_search_nothing_has_been_found(explorers: Explorers) -> None:
+    """While the initial marking is computed the lines of progress had what the memory held."""
+    text = """
+    net Slow
+      standard
+      var n : INT;
+      fun slow 0 = 7 | slow n = slow (n - 1)
+      place A : INT = 1`(slow 3000000)
+      trans T
+        in A : n
+    """
+    options = ("--progress", "--progress-every", "0.001")
+    lines = [json.loads(x) for x in explorers.explore(flat(text), *options).progress]
+    early = [x for x in lines if not x["states"]]
+    assert all(x["arcs"] == x["depth"] == x["frontier"] == 0 for x in early)

@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import time
-from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -17,13 +16,11 @@ import pytest
 
 from helpers.netbuilder import flat, write
 from helpers.processes import DEADLINE_S, Command, pn2code
-from pn2code.base.deadline import Deadline
+from helpers.swarms import Inline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.swarm import task
 from pn2code.verify.swarm.pool import Swarm
-from pn2code.verify.swarm.task import Job
 
 pytestmark = pytest.mark.cc
 
@@ -131,27 +128,6 @@ def test_one_worker_or_two(tmp_path: Path) -> None:
     two = pn2code(*map(str, asked), "--workers", "2")
     assert row(two.stdout) == said
     assert {p.name: p.read_bytes() for p in (tmp_path / "t").iterdir()} == runs
-
-
-class Inline:
-    """A pool without workers: one search after the other, here. `is_here`: or as a worker elsewhere would do it."""
-
-    workers = 1
-
-    def __init__(self, *, is_here: bool) -> None:
-        self.is_here = is_here
-
-    def start(self, d: Diagnostics, deadline: Deadline) -> bool:
-        return True
-
-    def results(
-        self, job: Job, searches: Sequence[tuple[str, ...]]
-    ) -> Iterator[tuple[int, dict[str, Any]] | None]:
-        for number, own in enumerate(searches):
-            yield number, task.run(job, number, own)
-
-    def end(self, first: int, *, gently: bool) -> None:
-        """All that begins is carried out."""
 
 
 def test_a_worker_elsewhere_compiles_the_net_itself(tmp_path: Path) -> None:

@@ -185,3 +185,50 @@ def test_walks_have_no_loops_in_their_runs(explorers: Explorers, tmp_path: Path)
     options = ("--swarm", 4, *WALK, "--error-trace-to", tmp_path / "error-")
     error = explorers.explore(flat(RAISES), *options, reads=False).report["error"]
     assert 5 <= error["trace"]["steps"] <= 5 * 3 + 2
+
+
+TRAP = """
+    net Trap
+      colset INT = int;
+      var n : INT;
+      place Start : INT = 1`0
+      place Over : INT
+      place Round : INT
+      trans Good
+        in Start : n
+        out Over : n
+      trans Bad
+        in Start : n
+        out Round : n
+      trans Go guard [n < 9]
+        in Round : n
+        out Round : n + 1
+      trans Again
+        in Round : 9
+        out Round : {again}
+"""
+ENDS = ("owner 0 0 1 2 3", "within 1 1 -", "ef 0", "? ends 1")
+
+
+@pytest.mark.parametrize(("most", "answer"), [(20_000, "no"), (4_000, "unknown")])
+def test_where_no_end_can_be_reached(explorers: Explorers, most: int, answer: str) -> None:
+    """The run leads to the first marking of the trap. It is not looked for where walks have seen little."""
+    asked = ask(explorers, TRAP.format(again="0"), (), "trap")
+    walk = ("--swarm", 2, "--walk", "--max-depth", 50, "--max-states", most)
+    _, (said,) = asked.say(ENDS, *walk, *ALL[:2])
+    assert said["answer"] == answer
+    if answer == "no":
+        assert said["why"] == "endless"
+        _, played = play(asked.flat, {}, Path(said["trace"]))
+        assert [step.transition for step, _ in played] == ["Top.Bad"] and said["steps"] == 1
+
+
+def test_the_way_to_an_exception_behind_the_end_of_a_walk(explorers: Explorers) -> None:
+    """What follows is looked at, and is farther away than a walk may go."""
+    asked = ask(explorers, TRAP.format(again="hd []"), (), "trap-raises")
+    walk = ("--swarm", 2, "--walk", "--max-depth", 4, "--max-states", 20_000)
+    run = asked.folder / "error-"
+    found, _ = asked.say(ENDS, *walk, *ALL[:2], "--error-trace-to", run)
+    assert found.report["error"]["trace"]["steps"] == 10
+    _, played = play(asked.flat, {}, Path(f"{run}0.trace.jsonl"))
+    assert [step.transition for step, _ in played] == ["Top.Bad", *["Top.Go"] * 9]

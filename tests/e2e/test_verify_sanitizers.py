@@ -92,6 +92,10 @@ def test_sanitized(sanitized: Explorers, tmp_path: Path, what: str) -> None:
     whole, answers = asked.say(QUESTIONS, "--threads", 2)
     assert whole.report["complete"]
     assert [a["answer"] for a in answers] == ["yes", "no", "no", "yes", "no", "unknown"]
+    ends = ("owner 0 0", "within 0 9 -", "ef 0", "? ends 1")  # walks look what follows, too
+    walk = ("--swarm", 2, "--walk", "--max-depth", 2, "--max-states", 9_000, "--sketch", 20)
+    _, (trapped,) = asked.say(ends, *walk)
+    assert trapped["answer"] == "no" and trapped["steps"] == 0
     early, answers = asked.say([*QUESTIONS[:4], "? invariant 1", "? invariant 3"], "--threads", 2)
     assert early.report["why"] == "decided" and [a["steps"] for a in answers] == [2, None]
     for number in (1, 5)[: amount(what == "addresses", 2)]:

@@ -70,13 +70,14 @@ def explorer_test(folder: Path, name: str, parts: Sequence[str], *flags: str) ->
 
 @dataclass(frozen=True, slots=True)
 class Explored:
-    """What an explorer has said: its report, its exit code, and with `--write-graph` the graph."""
+    """What an explorer has said: its report, its exit code, with `--write-graph` the graph, its lines of progress."""
 
     report: dict[str, Any]
     code: int
     nodes: tuple[str, ...] = ()
     arcs: tuple[tuple[int, int, str], ...] = ()
     lines: tuple[str, ...] = ()
+    progress: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +232,8 @@ class Explorers:
         lines = (
             text.rstrip("\n").split("\n") if text else []
         )  # in strings there are other line ends
-        return Explored(json.loads(done.stdout), done.returncode, lines=tuple(lines))
+        progress = tuple(x for x in done.stderr.splitlines() if x.startswith("{"))
+        return Explored(json.loads(done.stdout), done.returncode, (), (), tuple(lines), progress)
 
 
 def wide(sizes: Sizes, width: int) -> Sizes:

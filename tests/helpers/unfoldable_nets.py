@@ -8,6 +8,7 @@ Each transition puts about as many tokens as it takes, so that most of them have
 
 from __future__ import annotations
 
+import re
 from random import Random
 
 from helpers.random_properties import Author
@@ -22,32 +23,55 @@ _HEAD = """    net Random
       colset N = int with 0..3;
       colset AI = product A * I;
       colset AN = record a : A * n : N;
+      colset U = union ua : A + ub : N + uc;
+      colset L = list A with 0..2;
+      colset S = subset N with [0, 2, 3];
+      colset LU = product L * U;
       var x, y, z : A;
       var j, k : I;
       var n, m, l : N;
+      var u, v : U;
+      var p, q : L;
+      var s, t : S;
       fun turned a0 = a1 | turned a1 = a2 | turned a2 = a0;
       fun next (i q) = if q = 3 then i 1 else i (q + 1);
+      fun flip w = case w of ua b => ub 1 | ub 0 => uc | ub c => ub (c - 1) | uc => ua a2;
+      fun plain w = case w of ua b => b | _ => a0;
+      fun push (b, w) = if length w < 2 then b :: w else [b];
+      fun back w = case w of [] => [a1] | b :: w => w;
+      fun other w = case w of 0 => 2 | 2 => 3 | _ => 0;
 """
 _CONSTANTS = {
     "A": ("a0", "a1", "a2"), "I": ("(i 1)", "(i 2)", "(i 3)"), "N": ("0", "1", "2", "3"), "UNIT": ("()",),
     "AI": ("(a0, i 1)", "(a1, i 2)"), "AN": ("{a = a0, n = 1}", "{a = a2, n = 0}"),
+    "U": ("ua a0", "ub 1", "uc"), "L": ("[]", "[a0]", "[a1, a0]"), "S": ("0", "2", "3"),
+    "LU": ("([a0], uc)", "([], ub 2)"),
 }  # fmt: skip
 _TAKEN = {
     "A": ("x", "y"), "I": ("j", "k"), "N": ("n", "m"), "UNIT": ("()",),
     "AI": ("(x, j)", "(y, k)"), "AN": ("{a = x, n = n}", "{a = y, n = m}"),
+    "U": ("u", "v", "(ua x)", "(ub n)"), "L": ("p", "q", "(x :: p)", "[x, y]"), "S": ("s", "t"),
+    "LU": ("(p, u)", "(x :: p, ub n)", "(q, v)"),
 }  # fmt: skip
 _PUT = {
     "A": ("(turned x)", "(turned y)"),
     "I": ("(next j)", "(next k)"), "N": ("(3 - n)", "((n + m) mod 4)"), "UNIT": ("()",),
     "AI": ("(turned x, j)", "(y, next k)"), "AN": ("{a = turned x, n = n}", "{a = y, n = (m + 1) mod 4}"),
+    "U": ("flip u", "ua (plain u)", "ub n"), "L": ("push (x, p)", "back p", "(p ^^ [])"),
+    "S": ("other s", "(if s = 2 then 3 else s)"), "LU": ("(back p, flip u)", "(push (plain u, p), u)"),
 }  # fmt: skip
 _OF_CODE = {
     "A": ("x", "z", "if x = a0 then a2 else turned x"),
     "N": ("n", "l", "if n = 0 then 3 else n - 1"),
 }
 """Colour set: what a code segment reads, what it gives, and how."""
+_WORDS = re.compile(r"(?<![\w'.])[a-z](?![\w'])")
+"""Variables: names of one letter."""
+_SMALL = frozenset("xyzjknm")
+"""Of them those that are tried out where nothing gives them a value."""
 _GUARDS = (
     "[n < m]", "[x <> y]", "[n <> 2]", "[x = a1 orelse n = 0]", "[j <> k]", "[m = 3 - n]", "[x = turned y]",
+    "[n < m, x <> a1]", "[turned x = y, n <> m]",
 )  # fmt: skip
 
 
@@ -64,7 +88,8 @@ def unfoldable_net(r: Random) -> str:
         guard = f" guard {r.choice(_GUARDS)}" if r.random() < 0.3 else ""
         lines.append(f"      trans T{i}{guard}")
         taken = r.sample(list(places), min(len(places), r.randint(1, 2)))
-        read = {p: _text(r, _TAKEN[places[p]], _CONSTANTS[places[p]]) for p in taken}
+        read = {p: _input(r, places[p]) for p in taken}
+        known = _SMALL.union(*map(variables, read.values()))
         given = {
             kind: v for kind, v in _OF_CODE.items() if v[0] in read.values() and r.random() < 0.4
         }
@@ -74,8 +99,15 @@ def unfoldable_net(r: Random) -> str:
         lines += [f"        in {p} : {text}" for p, text in read.items()]
         for p in r.sample(list(places), len(taken)):
             own = [v[1] for kind, v in [*given.items()][:1] if kind == places[p]]
-            lines.append(f"        out {p} : {own[0] if own else _output(r, places[p])}")
+            lines.append(f"        out {p} : {own[0] if own else _output(r, places[p], known)}")
     return "\n".join(lines) + "\n"
+
+
+def _input(r: Random, kind: str) -> str:
+    one = _text(r, _TAKEN[kind], _CONSTANTS[kind])
+    if r.random() < 0.1 and "`" not in one:
+        return f"1`{one} ++ {r.randrange(2)}`({r.choice(_CONSTANTS[kind])})"
+    return one
 
 
 def _text(r: Random, usual: tuple[str, ...], constants: tuple[str, ...]) -> str:
@@ -83,12 +115,22 @@ def _text(r: Random, usual: tuple[str, ...], constants: tuple[str, ...]) -> str:
     return f"2`{one}" if r.random() < 0.1 else one
 
 
-def _output(r: Random, kind: str) -> str:
+def _output(r: Random, kind: str, known: set[str]) -> str:
     usual = _PUT[kind] if r.random() < 0.4 else _TAKEN[kind]
-    one = _text(r, usual, _CONSTANTS[kind])
+    fitting = tuple(x for x in usual if variables(x) <= known) or _CONSTANTS[kind]
+    one = _text(r, fitting, _CONSTANTS[kind])
     if r.random() < 0.1 and "`" not in one:
         return f"if n > 1 then 1`({one}) else empty"
+    if r.random() < 0.1 and "`" not in one:
+        return f"{r.choice(('0', 'n', '(if n = 2 then 0 else 1)'))}`({one})"
+    if r.random() < 0.05 and "`" not in one:
+        return f"1`({one}) ++ 0`({r.choice(_CONSTANTS[kind])})"
     return one
+
+
+def variables(text: str) -> set[str]:
+    """Those of an inscription, some of which may be those of its functions."""
+    return set(_WORDS.findall(text)) - {"i"}
 
 
 def properties_of(r: Random, net: FlatNet, count: int) -> list[str]:

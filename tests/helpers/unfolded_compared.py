@@ -11,11 +11,12 @@ from pn2code.base.deadline import Deadline
 from pn2code.properties.judge import Graph
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.opened import OpenNet
-from pn2code.verdict.unfolded.look import look
+from pn2code.verdict.unfolded.look import look, unfolded
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.properties import answers, from_unfolded
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.unfolded import Unfolded
 
 
 def differences(
@@ -77,6 +78,7 @@ def differences(
             "bounds": set(bounds) != {p.index for p in opened.flat.places},
         }
         yield from (f"not told: {what}" for what, is_so in is_missing.items() if is_so)
+    yield from _certificates(opened, told, graph, seen)
     for before in answers(asked.plain, (), found):
         answer = from_unfolded(before, found)
         seen[answer.answer] += 1
@@ -90,3 +92,26 @@ def differences(
             problem = confirm.problem(opened.flat, {}, asked.plain, answer)
             if problem:
                 yield f"{answer.about.holds}: {problem}"
+
+
+def _certificates(
+    opened: OpenNet, told: Unfolded, graph: Graph, seen: Counter[str]
+) -> Iterator[str]:
+    """That each weighted sum is in no marking less than at first, which is more than what is looked for permits."""
+    given = [one.certificate for one in (told.told or {}).values()]
+    cases = [c for found in (*given, told.dead_certificate) if found for c in found["cases"]]
+    unfolding = unfolded(opened.flat) if cases else ""
+    if isinstance(unfolding, str):
+        return
+    of = {p.name: (p.place, p.colour) for p in unfolding.places}
+    for case in cases:
+        weights = case["weights"]
+        if not weights.keys() <= of.keys():  # it counts steps, which no marking has
+            continue
+        seen["certificates"] += 1
+        least = min(
+            sum(w * Counter(marking.places[of[p][0]])[of[p][1]] for p, w in weights.items())
+            for marking in graph.markings
+        )
+        if not least >= case["at_first"] > case["at_most"]:
+            yield f"no certificate: {case}"

@@ -37,4 +37,5 @@ def test_random_nets(tmp_path: Path) -> None:
         assert not wrong, (seed, wrong)
     assert seen["nets"] >= 6
     assert seen["yes"] >= 10 and seen["no"] >= 10 and seen["runs"] >= 5, seen
+    assert seen["certificates"] >= 1, seen
     assert seen["inconclusive"] < seen["yes"] + seen["no"], seen

@@ -3,6 +3,7 @@
     python -m tools.bench.tending --parts 4 FOLDER           # cell.cpn and cell.toml; --properties: what it must not do
     python -m tools.bench.tending --measure 2,4,6             # markings with and without partial order
     python -m tools.bench.tending --reduced --measure 8,12    # with it only
+    python -m tools.bench.tending --swept --measure 6,8       # all in memory, and by a sweep line
 
 Arm 1 feeds the loader and carries loaded parts to the mill; arm 2 passes milled parts to the finisher and stows
 finished ones on the pallet for good parts or for scrap. Between the machines parts wait on trays, any number of them.
@@ -330,6 +331,7 @@ def main() -> int:
         "--states", type=int, default=10_000_000, help="most markings (default: %(default)s)"
     )
     parser.add_argument("--reduced", action="store_true", help="with partial order only")
+    parser.add_argument("--swept", action="store_true", help="all in memory, and by a sweep line")
     parser.add_argument("--properties", action="store_true", help="write some of them, too")
     parser.add_argument("folder", type=Path, nargs="?")
     given = parser.parse_args()
@@ -342,9 +344,12 @@ def main() -> int:
         print("| parts | reduction | markings | dead | seconds | MiB | whole command, s |")
         print("|---|---|---|---|---|---|---|")
     for parts in map(int, given.measure.split(",")) if given.measure else ():
-        for options in ((), ("--reduce", "partial-order"))[given.reduced :]:
+        ways = ((), ("--reduce", "partial-order"))[given.reduced :]
+        if given.swept:  # by one thread each, since a sweep has no more
+            ways = (("--no-sweep", "--no-graph", "--threads", "1"), ("--sweep",))
+        for options in ways:
             found = measure(parts, limits, *options)
-            used = ", ".join(found["reductions"]) or "none"
+            used = ", ".join(found["reductions"]) or ("sweep" if found["sweep"] else "none")
             size = f"{found['nodes']:,}" if found["complete"] else f"more than {found['nodes']:,}"
             dead = found["dead_markings"] if found["complete"] else "?"
             print(

@@ -26,6 +26,7 @@
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "swarm/explore_swarm.h"
+#include "sweep/explore_sweep.h"
 #include "pn/pn_file.h"
 
 #define MEBI              ((uint64_t)1U << 20U)
@@ -61,6 +62,9 @@ static void print_help(void)
         "  --dependency FILE   instead of it, for partial-order: which transitions depend on which\n"
         "  --turns FILE        the table by which programs take turns: each run is seen in one of its orders\n"
         "  --counts FILE       the table of places whose tokens are counted up to a limit only; needs --turns\n"
+        "  --sweep FILE        in the order of weights of places, by one thread: what is behind is forgotten; no "
+        "graph\n"
+        "  --forgetful         for tests: of --sweep, after each layer, not only where the store would grow\n"
         "  --spill DIR         keep large tables in files of a folder\n"
         "  --progress          lines of JSON on the standard error\n"
         "  --progress-every S  seconds between them (default 0.5)\n"
@@ -185,6 +189,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--dependency") == 0) && read_text(value, &options->dependency))
            || ((strcmp(option, "--turns") == 0) && read_text(value, &options->turns))
            || ((strcmp(option, "--counts") == 0) && read_text(value, &options->counts))
+           || ((strcmp(option, "--sweep") == 0) && read_text(value, &options->sweep))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
@@ -214,6 +219,18 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 
+/* States that are left out, or taken for others, and programs that take turns have orders of their own. */
+static bool can_sweep(const ex_options_t *options)
+{
+    const bool is_other = options->is_bitstate || options->is_hashed || options->is_stubborn || options->is_symmetric
+                          || (options->turns != NULL) || (options->counts != NULL);
+    if ((options->sweep != NULL) && is_other) {
+        (void)fprintf(stderr, "explore: --sweep goes with no approximation, and no reduction but that of time\n");
+        return false;
+    }
+    return true;
+}
+
 static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U,
@@ -240,6 +257,8 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
             options->is_still = true;
         } else if (strcmp(option, "--no-notes") == 0) {
             options->has_notes = false;
+        } else if (strcmp(option, "--forgetful") == 0) {
+            options->is_forgetful = true;
         } else if (strcmp(option, "--walk") == 0) {
             options->is_walk = true;
         } else if (strcmp(option, "--progress") == 0) {
@@ -260,10 +279,15 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
         options->has_graph = false;
         options->threads = 1U;
     }
+    if (options->sweep != NULL) {
+        options->is_depth_first = false;
+        options->has_graph = false;
+        options->threads = 1U;
+    }
     options->is_walk = options->is_walk && (options->swarm != 0U);
     /* What is remembered of transitions does not say which of them a program asks. */
     options->has_notes = options->has_notes && (options->turns == NULL);
-    return true;
+    return can_sweep(options);
 }
 
 /* --- signals and the watch ---------------------------------------------------------------------------------------- */
@@ -462,13 +486,13 @@ static int explore(ex_run_t *run)
             ex_bindings(run);
         }
     }
-    if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR)
+    if (is_explored && is_exact && (run->sweep == NULL) && (atomic_load(&run->why) == (int)EX_ERROR)
         && (strcmp(run->error.kind, "exception") == 0)) {
         ex_phase(run, "trace");
         ex_follow_error(run);
     }
-    if (is_explored && (run->swarm != NULL) && atomic_load(&run->has_begun) && (atomic_load(&run->why) == (int)EX_ERROR)
-        && (strcmp(run->error.kind, "exception") == 0)) {
+    if (is_explored && ((run->swarm != NULL) || (run->sweep != NULL)) && atomic_load(&run->has_begun)
+        && (atomic_load(&run->why) == (int)EX_ERROR) && (strcmp(run->error.kind, "exception") == 0)) {
         ex_follow_way_error(run);
     }
     if (is_explored && (run->queries != NULL)) {
@@ -511,7 +535,8 @@ int main(int argc, char **argv)
         return EX_EXIT_USAGE;
     }
     ex_equip(run);
-    if ((run->options.queries != NULL) && !ex_queries_read(run)) {
+    if (((run->options.queries != NULL) && !ex_queries_read(run))
+        || ((run->options.sweep != NULL) && !ex_sweep_read(run))) {
         return EX_EXIT_USAGE;
     }
     catch_signals();

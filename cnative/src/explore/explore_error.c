@@ -15,6 +15,7 @@
 
 #include "graph/explore_rescan.h"
 #include "swarm/explore_swarm.h"
+#include "sweep/explore_sweep.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_arena.h"
 #include "pn/pn_text.h"
@@ -174,11 +175,12 @@ void ex_follow_way_error(ex_run_t *run)
     ex_worker_t *const worker = &run->worker[0];
     const ex_error_t met = run->error;
     ex_raised_t *const raised = ex_alloc(&run->memory, sizeof *raised);
-    const ex_key_t key = run->swarm->way[run->swarm->depth];
+    const ex_key_t key = (run->swarm != NULL) ? run->swarm->way[run->swarm->depth] : ex_sweep_at(run);
     clear(run);
     if ((raised != NULL) && (run->options.error_trace_to != NULL)) {
         (void)snprintf(raised->path, sizeof raised->path, "%s0.trace.jsonl", run->options.error_trace_to);
-        raised->steps = ex_swarm_write(run, raised->path, "error");
+        raised->steps = (run->swarm != NULL) ? ex_swarm_write(run, raised->path, "error")
+                                             : ex_sweep_write(run, raised->path, "error");
         clear(run);
     } else if (raised != NULL) {
         raised->steps = -1;

@@ -44,6 +44,8 @@ typedef struct ex_options {
     const char *dependency;  /* file: the table that partial order needs where there is no such table */
     const char *turns;       /* file: the table by which programs take turns; NULL: they do not */
     const char *counts;      /* file: the places whose tokens are counted up to a limit only; NULL: there are none */
+    const char *sweep;       /* file: the weights by which states are swept; NULL: they are not */
+    bool is_forgetful;       /* of it: after each measure all is forgotten that can be */
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
     bool writes_part;        /* also of a part of the graph, where a limit was reached */

@@ -127,6 +127,7 @@ typedef struct ex_run {
     bool has_components;          /* and gone through: components, home, liveness, fairness */
     struct ex_queries *queries;   /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_swarm *swarm;       /* of explore_swarm.c; NULL: it is not one of many searches */
+    struct ex_sweep *sweep;       /* of explore_sweep.c; NULL: nothing is forgotten */
     ex_key_t turned;              /* the seed of what is kept of a state by approximations */
     struct ex_raised *raised;     /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;

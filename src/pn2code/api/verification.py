@@ -110,6 +110,7 @@ def verify(
         max_states=max_states,
         deadline=Deadline.after(max_seconds),
         threads=threads or cores(),
+        sweeps=None,
         unfolds=unfold,
     )
     with ExitStack() as stack:

@@ -31,7 +31,7 @@ from pn2code.verify.controller.premises import COUNTED, IN_TURNS
 from pn2code.verify.controller.rival_transitions import hasty
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.explore import ExploreOptions, explore
-from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.limits import Approximation, Limits, Reduction
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration
 
@@ -75,6 +75,7 @@ class Answer:
         assumes: what the answer rests on.
         reduced: whether `nodes` and `arcs` are those of the reduced space of `by_turns`, or of one of the cell without
             its medium (`by_cell`).
+        swarm: what a swarm of searches has seen (`Exploration.swarm`); None: there was none.
     """
 
     check: str
@@ -89,6 +90,7 @@ class Answer:
     assumes: str
     evidence: tuple[Evidence, ...]
     reduced: bool = False
+    swarm: Mapping[str, Any] | None = None
 
     @property
     def rests_on(self) -> str | None:
@@ -107,6 +109,7 @@ class Answer:
             "places": self.places,
             "transitions": self.transitions,
             "reduced": self.reduced,
+            "swarm": None if self.swarm is None else dict(self.swarm),
             "seconds": round(self.seconds, 3),
             "assumes": self.assumes,
             "rests_on": self.rests_on,
@@ -180,6 +183,10 @@ def check_channel_model(
     alike: dict[Topology, list[int]] = {}
     for owner in partition.owners[1:]:
         alike.setdefault(topology(partition, owner.index), []).append(owner.index)
+    if limits.swarm is not None:
+        # An exchange is small: it is explored as a whole, and what limits a search is no limit of it.
+        alone = replace(limits, swarm=None, max_states=None, memory=None)
+        run = replace(run, limits=alone)
     for kind, owners in alike.items():
         if kind != Topology(0, 0, 0, 0):
             yield exchange(partition, owners[0], run, rules, crashes, owners[1:])
@@ -224,6 +231,8 @@ def whole(
             return found
         return replace(found, answer="inconclusive", why=_HASTY, evidence=())
 
+    if run.limits.swarm is not None:
+        return explored(net, run.limits, _choices(partition))
     first, most = run.limits.turns_from, run.limits.max_states or MOST_STATES
     if first is None or partition.net.timed or not partition.final_places:
         return full(run.limits)
@@ -391,24 +400,27 @@ def _explored(
 ) -> Answer:
     """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
     began = time.perf_counter()
+    is_swarm = run.limits.swarm is not None
     mine = replace(
         run.limits,
-        max_states=run.limits.max_states or MOST_STATES,
+        max_states=run.limits.max_states or (None if is_swarm else MOST_STATES),
         graph=True,
         traces=MOST_TRACES,
-        approximation=None,
+        approximation=Approximation.BITSTATE if is_swarm else None,
         reductions=tuple(r for r in run.limits.reductions if r is Reduction.TIME),
     )
     sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
+    of_ends = _question(net) if judged else _TO_THE_END
+    if is_swarm:
+        of_ends = _NO_DEADLOCK if judged else ""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
         options = replace(
             run.options,
             traces=Path(folder),
             sizes=sizes,
-            questions=choices
-            + (_question(net) if judged else _TO_THE_END)
-            + f"? bound {net.verdict} 0 0\n",
+            questions=f"{choices}{of_ends}? bound {net.verdict} 0 0\n",
             evidence=Path(folder),
+            ending=(0, 1) if judged else (0,),
         )
         found = explore(net.net, storage, mine, run.d, options)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))
@@ -433,9 +445,12 @@ def _explored(
         seconds=time.perf_counter() - began,
         assumes=assumes,
         evidence=runs,
+        swarm=found.swarm if found else None,
     )
 
 
+_NO_DEADLOCK = "dead\nnot 0\n? invariant 1\n"
+"""What a swarm is asked, which knows no graph: whether something can happen in each marking."""
 _TO_THE_END = "true\n? initially 0\n"
 """A question without which the first fault would answer all of them, and end the exploration."""
 
@@ -461,6 +476,8 @@ def _evidence(
     kept = [(trace.steps, trace.file) for trace in found.traces]
     # Other dead markings may have had all the room.
     kept += [(a["steps"], Path(a["trace"])) for a in of_faults if a["trace"]]
+    if found.swarm is not None:  # of it is asked what is dead
+        kept += [(a["steps"], Path(a["trace"])) for a in of_ends if a["trace"]]
     for steps, trace in sorted(kept, key=lambda run: run[0]):
         lines, fault = teller.told(trace)
         if fault not in seen:
@@ -489,6 +506,8 @@ def _verdict(
         return "inconclusive", "it could not be explored"
     if runs:
         return "no", ""
+    if found.swarm is not None:  # without a run it is not believed
+        return "inconclusive", _incomplete(found.why)
     if found.fired[net.ending]:
         return "no", "there is a fault of the exchange, but no run to it was kept"
     if judged and found.dead_count:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections.abc import Iterable
@@ -14,7 +15,15 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.progress_line import SILENCE_S, Line
-from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
+from pn2code.base.whole_file import whole_file
+from pn2code.cli.options import (
+    Exit,
+    Format,
+    check_writable,
+    print_diagnostics,
+    seconds_option,
+    stop,
+)
 from pn2code.contest import ptnet
 from pn2code.contest.asking import Asking
 from pn2code.contest.building import wait_until_built
@@ -53,6 +62,15 @@ def contest(
         int, typer.Option(metavar="MIB", min=16, help="The most memory for all methods.")
     ] = 8192,
     only: Annotated[Method | None, typer.Option(help="Use this method alone.")] = None,
+    evidence: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="In the time that is left then, write into this file, as lines of JSON, why what is not reachable "
+            "is not: weights of places that anybody can check (docs/contest.md).",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Answer an examination of the Model Checking Contest, in its own words.
 
@@ -60,6 +78,7 @@ def contest(
     wrong.
     """
     sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
+    check_writable(evidence, "--evidence")
     deadline = Deadline.of_command(max_seconds)
     lines = names(examination, folder)
     watch = watched(deadline, lines)
@@ -95,6 +114,10 @@ def contest(
             else:
                 answers = asking.of_net(net, lambda net: _tables(net, d))
             _print(answers, asking)
+            if evidence is not None:
+                rows = (json.dumps(row, ensure_ascii=False) + "\n" for row in asking.evidence())
+                with whole_file(evidence) as beside:
+                    beside.write_text("".join(rows), encoding="utf-8", errors="surrogateescape")
         except FormulaError as error:
             typer.echo(f"pn2code: {error}", err=True)
             typer.echo(UNKNOWN)

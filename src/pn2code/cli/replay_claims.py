@@ -55,12 +55,6 @@ def claims(
     partition = divide(opened.flat, config, d)
     if partition is None:
         stop(d, form)
-    parties = Parties(
-        names=tuple(o.name for o in partition.owners),
-        owner=partition.transition_owner,
-        messages=frozenset(c.place for c in partition.channels),
-        final=partition.final_places,
-        digests=digests,
-        inputs=frozenset(i.place for i in partition.inputs),
+    return Claims(
+        Parties.of(partition, digests), not any_digest, may_fail, RunNotes(config, partition)
     )
-    return Claims(parties, not any_digest, may_fail, RunNotes(config, partition))

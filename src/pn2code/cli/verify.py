@@ -45,11 +45,11 @@ from pn2code.cli.verify_swarm import (
     SchedulerOption,
     SwarmOption,
     WorkersOption,
-    check_net,
     check_options,
     endings,
     swarm_of,
 )
+from pn2code.cli.verify_sweep import wanted_sweep
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import Asked
@@ -165,6 +165,15 @@ def verify(
             help="Explore the full state space, even of a large cell, and with `--reduce`.",
         ),
     ] = False,
+    sweep: Annotated[
+        bool | None,
+        typer.Option(
+            "--sweep/--no-sweep",
+            help="Forget markings that cannot come back, by a measure of progress (docs/reductions.md); or never.  "
+            "(default: once more, where the limit of memory ends the exploration)",
+            show_default=False,
+        ),
+    ] = None,
     unfold: Annotated[
         bool | None,
         typer.Option(
@@ -330,8 +339,20 @@ def verify(
         ("--approximate", approximate is not None),
         ("--spill", spill is not None),
         ("--threads", threads is not None),
+        ("--durations", durations),
     )
     check_options(swarm, scheduler, workers, reductions, unused)
+    sweeps = wanted_sweep(
+        sweep,
+        reductions,
+        (
+            ("--order dfs", order is Order.DEPTH),
+            ("--approximate", approximate is not None),
+            ("--swarm", swarm is not None),
+            ("--unfold", bool(unfold)),
+            ("--draw", draw_to is not None),
+        ),
+    )
     d = Diagnostics()
     try:
         with deadline.enforced():
@@ -339,8 +360,6 @@ def verify(
                 net, parse_values(settings), form, int_bits=int_bits, warnings=d, inputs=inputs
             )
             refuse_wide(opened.config, int_bits)
-            if swarm is not None:
-                check_net(opened)
             asked = question(opened, texts, file, d, found=found_properties)
             if unfold and opened.config is not None:
                 raise typer.BadParameter(
@@ -369,6 +388,7 @@ def verify(
         reductions=reductions,
         turns_from=None if no_reduction else TURNS_FROM,
         counts_from=None if no_reduction else COUNTS_FROM,
+        sweeps=sweeps,
         unfolds=unfold is not False,
         unfolds_alone=bool(unfold),
     )

@@ -10,7 +10,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis
 from pn2code.verify.exploring.result import Exploration, Known
-from pn2code.verify.report import control_text, swarm_text, unfolded_text
+from pn2code.verify.report import control_text, swarm_text, sweep_text, unfolded_text
 from pn2code.verify.report.text import bounded_places
 
 MOST_NAMES = 6
@@ -34,6 +34,9 @@ def sizes_of(said: Said) -> Iterator[str]:
         yield from row(name, what + more)
     if found.swarm is not None:
         yield from row("Swarm", swarm_text.seen(found.swarm))
+        cell = said.control.found if said.control is not None else None
+        if cell is not None and cell.swarm is not None:
+            yield from row("Cell as it runs", swarm_text.seen(cell.swarm))
     elif found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
         yield from row(
@@ -42,6 +45,8 @@ def sizes_of(said: Said) -> Iterator[str]:
         )
     if found.reductions:
         yield from row("Reduced by", ", ".join(found.reductions))
+    if found.sweep is not None:
+        yield from row("Swept", sweep_text.known(found))
     for name, what in unfolded_text.rows(net, found):
         yield from row(name, what)
     if found.unfolded is not None and (found.unfolded.is_asked or found.unfolded.is_alone):

@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from pn2code.properties import meaning as m
-from pn2code.verdict.opened import OpenNet
 from pn2code.verify.exploring.limits import Reduction, cores
 from pn2code.verify.swarm.cluster import Cluster
 from pn2code.verify.swarm.pool import Swarm
@@ -95,20 +94,6 @@ def check_options(
     if any(r is not Reduction.TIME for r in reductions):
         raise typer.BadParameter(
             "of the reductions its searches know `--reduce time` alone", param_hint="--swarm"
-        )
-
-
-def check_net(opened: OpenNet) -> None:
-    """Refuses a cell.
-
-    Raises:
-        typer.BadParameter: it is one.
-    """
-    if opened.config is not None:
-        raise typer.BadParameter(
-            "it searches the state space of a net; what is said of a cell is said of its programs, which are "
-            "explored as a whole",
-            param_hint="--swarm",
         )
 
 

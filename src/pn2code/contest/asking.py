@@ -10,16 +10,23 @@ and if it cannot be unfolded in its share of the time, for the rest of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from math import prod
 from pathlib import Path
+from typing import Any
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.contest.conditions import AtMost, Condition
 from pn2code.contest.engine import Space
+from pn2code.contest.evidence import evidence, of_condition, rests_on
 from pn2code.contest.examinations import Asked, asked
+from pn2code.contest.formulas import Formula, FormulaError, Op
+from pn2code.contest.lines import Result
 from pn2code.contest.portfolio import answers
 from pn2code.contest.space import space
+from pn2code.contest.structural import terms
 from pn2code.contest.tables import Tables
 from pn2code.contest.uncoloured import uncoloured
 from pn2code.contest.watchdog import Watch
@@ -75,6 +82,8 @@ class Asking:
         self.watch = Watch() if watch is None else watch
         self.unknown: dict[str, str] | None = None
         """Lines that are open, with the reason; None: nothing was asked yet."""
+        self.shown: list[tuple[Result, Condition | str, Tables]] = []
+        """Answers that nothing is reachable, with what was looked for."""
 
     def of_tables(self, tables: Tables) -> Iterator[str]:
         """The lines for a place/transition net.
@@ -162,11 +171,34 @@ class Asking:
             only=self.only,
             game=game,
         )
+        by_name = {q.name: q for q in questions}
         for result in found:
+            if game is None:
+                self.note(by_name[result.name], result, tables)
             del self.unknown[result.name]
             self.watch.note_said(result.name)
             value = str(result.value).upper()
             yield f"FORMULA {result.name} {value} TECHNIQUES {result.techniques}"
+
+    def note(self, asked: Asked, result: Result, tables: Tables) -> None:
+        """Keep an answer for `evidence`, if it says that nothing is reachable."""
+        sought = _sought(asked, result, tables)
+        if sought is not None:
+            self.shown.append((result, sought, tables))
+
+    def evidence(self) -> Iterator[dict[str, Any]]:
+        """For each answer that nothing is reachable why not, as far as there is time."""
+        until = time.monotonic() + max(0.0, self.deadline.left or 0.0)
+        for result, sought, tables in self.shown:
+            name = _names(tables)
+            if isinstance(sought, str):
+                found = evidence(sought, tables, name, until)
+            else:
+                found = of_condition(sought, tables, name, until)
+            methods = tuple(result.techniques.split())
+            is_late = time.monotonic() > until
+            rests = None if found is not None else rests_on(methods, is_late=is_late)
+            yield {"name": result.name, "certificate": found, "rests_on": rests}
 
     def _rest(self) -> Iterator[str]:
         """What is not known."""
@@ -179,6 +211,53 @@ class Asking:
                 self.say(f"{name}: {why}")
             self.watch.note_said(name)
             yield unknown(name)
+
+
+def _sought(asked: Asked, result: Result, tables: Tables) -> Condition | str | None:
+    """What is not reachable, by an answer: of a bound one token more; None: it says something else."""
+    match asked.formula:
+        case Op("E", (Op("F", (f,)),)) if result.value is False:
+            return _question(tables, f)
+        case Op("A", (Op("G", (f,)),)) if result.value is True:
+            return _question(tables, Op("not", (f,)))
+    if len(asked.parts) != 1 or asked.decides is not None:
+        return None
+    (part,) = asked.parts
+    if part.kind == "reach" and result.value == asked.is_turned:
+        return part.text
+    if part.kind == "bound":
+        more = tuple((p, -n) for p, n in terms(part.text.split(" ", 1)[1]))
+        return AtMost(more, -result.value - 1)
+    return None
+
+
+def _question(tables: Tables, f: Formula) -> str | None:
+    """Of a formula about one marking; None: it is about more."""
+    try:
+        return f"reach {tables.formula(f)}"
+    except FormulaError:
+        return None
+
+
+def _names(tables: Tables) -> Callable[[int], str]:
+    """Of its places, and of the numbers of steps of its transitions, which come after these."""
+    places = dict(_numbered(tables.places))
+    transitions = dict(_numbered(tables.transitions))
+    count = len(tables.initial)
+
+    def name(number: int) -> str:
+        if number < count:
+            return places.get(number, f"place {number}")
+        return f"steps of {transitions.get(number - count, f'transition {number - count}')}"
+
+    return name
+
+
+def _numbered(ids: Mapping[str, Sequence[int]]) -> Iterator[tuple[int, str]]:
+    """Of several that one id stands for, each has a number behind it."""
+    for name, own in ids.items():
+        for i, number in enumerate(own):
+            yield number, name if len(own) == 1 else f"{name}[{i}]"
 
 
 def is_large(net: FlatNet, game: Game) -> bool:

@@ -21,12 +21,14 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from math import gcd
 from typing import TYPE_CHECKING, Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.late import Late
 from pn2code.contest import certificates
-from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, junction
+from pn2code.contest.conditions import AtMost, Condition, Dead, Junction
+from pn2code.contest.proofs import Choice, Leaf, Proof, Split, dead, spread
 from pn2code.contest.tables import Tables
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ LONGEST_WAIT_S = 0.5
 """For the end of a linear program; HiGHS may go on for seconds after its time limit."""
 MOST_STEPS = 1_000_000
 """Of a transition in a solution that is followed."""
+MOST_LEAVES = 200
+"""Of a proof: a longer one tells nobody anything."""
 MOST_SPLITS = 40
 """Fractions that are split one inside the other."""
 
@@ -115,6 +119,8 @@ class StateEquation:
         self.is_exhausted = True
         self.guide: dict[int, int] = {}
         self.most: dict[int, int] = {}
+        self._certain: tuple[Sequence[int], Mapping[int, int]] | None = None
+        self._leaves_left = 0
 
     @cached_property
     def _matrix(self) -> Any:
@@ -136,7 +142,7 @@ class StateEquation:
         self.is_exhausted = True
         self.guide = {}
         if isinstance(condition, Dead):
-            condition = _dead(self.tables)
+            condition = dead(self.tables)
         waiting = [_with(_Node((), ()), condition)]
         try:
             while waiting:
@@ -281,6 +287,76 @@ class StateEquation:
             raise _UnknownError
         return result
 
+    def proof(self, condition: Condition, until: float, most: int = MOST_LEAVES) -> Proof | None:
+        """A proof that no reachable marking satisfies a condition, to be checked by `proofs.is_proof`.
+
+        It splits fractions only, not steps that can never begin. None: it has found none, or one of too many leaves.
+        """
+        rows, choices = spread(condition, self.tables)
+        self._leaves_left = most
+        try:
+            return self._proved_by_cases(tuple(rows), tuple(choices), 0, until)
+        except (_UnknownError, RecursionError):
+            return None
+
+    def _proved_by_cases(
+        self, rows: tuple[AtMost, ...], choices: tuple[Junction, ...], splits: int, until: float
+    ) -> Proof:
+        while True:
+            all_rows = [*rows, *self.traps]
+            found = self._solved(all_rows, until)
+            if found.distance <= _ZERO:
+                open_ = [c for c in choices if not _nearly(c, found.marking)]
+                if open_:
+                    return self._by_parts(
+                        rows, choices, min(open_, key=lambda c: len(c.parts)), splits, until
+                    )
+                if self._add_trap(found.marking):
+                    continue
+                parts = self._at_a_fraction(found)
+                if not parts or splits >= MOST_SPLITS:
+                    raise _UnknownError
+                below, above = (
+                    self._proved_by_cases((*rows, row), choices, splits + 1, until) for row in parts
+                )
+                return Split(parts[0], below, above)
+            self._leaves_left -= 1
+            self._certain = None
+            if self._leaves_left < 0 or not self._is_refuted(all_rows, found):
+                raise _UnknownError
+            assert self._certain is not None
+            return self._leaf(all_rows, *self._certain)
+
+    def _by_parts(
+        self,
+        rows: tuple[AtMost, ...],
+        choices: tuple[Junction, ...],
+        chosen: Junction,
+        splits: int,
+        until: float,
+    ) -> Proof:
+        rest = tuple(c for c in choices if c != chosen)
+        parts = []
+        for part in chosen.parts:
+            more, further = spread(part, self.tables)
+            parts.append(self._proved_by_cases((*rows, *more), (*rest, *further), splits, until))
+        return Choice(chosen, tuple(parts))
+
+    def _leaf(
+        self, rows: Sequence[AtMost], factors: Sequence[int], weight: Mapping[int, int]
+    ) -> Leaf:
+        """The certificate, with the least numbers, and with the rows that it uses."""
+        by = gcd(*factors, *weight.values()) or 1
+        used = [(row, f // by) for row, f in zip(rows, factors, strict=True) if f]
+        own = [(row, f) for row, f in used if row not in self.traps]
+        traps = [(row, f) for row, f in used if row in self.traps]
+        return Leaf(
+            tuple(row for row, _ in own),
+            tuple(tuple(p for p, _ in row.factors) for row, _ in traps),
+            tuple(f for _, f in (*own, *traps)),
+            {p: w // by for p, w in sorted(weight.items()) if w},
+        )
+
     def _is_refuted(self, rows: Sequence[AtMost], found: _Solution) -> bool:
         places = self.places
         for numbers, _ in certificates.integers(found.duals.tolist()):
@@ -299,6 +375,7 @@ class StateEquation:
         """Check a certificate; the rows that it needs contradict each other wherever they meet again."""
         if not certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted):
             return False
+        self._certain = factors, weight
         used = {row for row, f in zip(rows, factors, strict=True) if f}
         self._contradictions.append(frozenset(used.difference(self.traps)))
         return True
@@ -428,14 +505,6 @@ def _ends(arcs: Sequence[Mapping[int, int]], places: int) -> list[list[int]]:
 def _effect(pre: Mapping[int, int], post: Mapping[int, int]) -> dict[int, int]:
     found = {p: post.get(p, 0) - pre.get(p, 0) for p in pre.keys() | post.keys()}
     return {p: n for p, n in found.items() if n}
-
-
-def _dead(tables: Tables) -> Condition:
-    """No transition is enabled, as comparisons."""
-    return junction(
-        True,
-        [junction(False, [AtMost(((p, 1),), n - 1) for p, n in pre.items()]) for pre in tables.pre],
-    )
 
 
 def _with(node: _Node, condition: Condition) -> _Node | None:

@@ -19,7 +19,7 @@ from itertools import combinations
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
-from pn2code.net import engine_guards
+from pn2code.net import engine_guards, engine_patterns
 from pn2code.net.codes import (
     ARCS_SHARE,
     BINDING_CIRCLE,
@@ -29,6 +29,7 @@ from pn2code.net.codes import (
     ENGINE_ORDER,
     GUARD_REPEATS,
     LOCAL_NAME,
+    PATTERN_REPEATS,
     SUMMANDS_SHARE,
     UNBOUND_VARIABLE,
 )
@@ -186,7 +187,7 @@ class Planner:
             return True
         reader = PartReader(self.variables, self.terms)
         self.warn_of_fields(parts, arcs, reader)
-        if not parts.written and self.is_evident(arcs):
+        if not parts.written and self.is_evident(arcs, reader):
             self.warn_of_code(parts, arcs)
             return True
         answer = examine(arcs, parts.guards[: parts.written], reader, self.is_small)
@@ -217,6 +218,7 @@ class Planner:
             )
         if answer.kind in ("", "undecided"):
             self.warn_of_code(parts, arcs)
+            self.warn_of_patterns(parts, arcs, answer, reader)
         return True
 
     def warn_of_code(self, parts: Parts, arcs: Sequence[TakingArc]) -> None:
@@ -232,6 +234,45 @@ class Planner:
                 hint="put a variable there, and give it this value in the guard: `v = ...`",
             )
 
+    def warn_of_patterns(
+        self, parts: Parts, arcs: Sequence[TakingArc], answer: Answer, reader: PartReader
+    ) -> None:
+        """Of patterns that CPN Tools binds wrongly, and of what it takes for one."""
+        for i in sorted(answer.odd):
+            text = " ".join(engine_patterns.odd_part(arcs[i], reader).span.text.split())
+            cannot = "cannot" if answer.is_odd else "may be unable to"
+            self.d.warning(
+                ENGINE_CODE,
+                f"CPN Tools accepts transition `{parts.name}`, but {cannot} compile the code that it makes of it: it "
+                f"looks for a token of which a part is known, and `{text}` is no pattern",
+                arcs[i].inscription.origin,
+                notes=[Note(HERE, parts.origin)],
+                hint=f"put a variable there, and say in the guard what it is: `v = {text}`",
+            )
+        guards = parts.guards[: parts.written]
+        for symbol, span in engine_patterns.on_arcs(arcs):
+            if symbol in answer.repeated:
+                self.d.warning(
+                    PATTERN_REPEATS,
+                    f"CPN Tools may take a wrong token for transition `{parts.name}`, and stop: a pattern has "
+                    f"`{symbol.name}` twice, and it does not compare the two",
+                    span,
+                    label="once more",
+                    notes=[Note(HERE, parts.origin)],
+                    hint=f"write another variable there, and say in the guard that it is equal: `v = {symbol.name}`",
+                )
+        for symbol, span in engine_patterns.in_guard(guards, self.terms):
+            if symbol in answer.repeated:
+                self.d.warning(
+                    PATTERN_REPEATS,
+                    f"CPN Tools may let transition `{parts.name}` occur where its guard does not hold: a pattern has "
+                    f"`{symbol.name}` twice, and it does not compare the two",
+                    span,
+                    label="once more",
+                    hint="write another variable there, and say in the guard that it is equal: "
+                    f"`v = {symbol.name}`",
+                )
+
     def warn_of_fields(self, parts: Parts, arcs: Sequence[TakingArc], reader: PartReader) -> None:
         """Of arcs of which CPN Tools may miss tokens."""
         guards = parts.guards[: parts.written]
@@ -246,14 +287,18 @@ class Planner:
                 hint=f"write them in its order: {{{declared}}}",
             )
 
-    def is_evident(self, arcs: Sequence[TakingArc]) -> bool:
+    def is_evident(self, arcs: Sequence[TakingArc], reader: PartReader) -> bool:
         """Whether an order is found whatever the variables are: without a guard, by an arc with one summand."""
         terms = [t for arc in arcs for t in arc.inscription.terms]
         return (
             len(terms) < 2
             and not any(has_long_delay(arc.inscription.value) for arc in arcs)
             and not any(
-                self.variables.seen(t.coefficient) or self.variables.seen(t.delay) for t in terms
+                self.variables.seen(t.coefficient)
+                or self.variables.seen(t.delay)
+                or engine_patterns.is_odd(t.value, reader)
+                or any(engine_patterns.twice(t.pattern))
+                for t in terms
             )
         )
 

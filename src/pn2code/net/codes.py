@@ -278,7 +278,20 @@ ENGINE_CODE = register(
     "It writes the arcs from one place as one sum, and the value of each behind its coefficient without the "
     "parentheses: of `h :: t` and `l` it makes 1`h::t ++ 1`l. With `if` it may be compiled, and then means something "
     "else. From a place with a clock it does so with a single arc, too, if the coefficient is not 1: 2`(n + 1). It "
-    "accepts the net, and says so only when it is to be simulated. pn2code takes what is written.",
+    "accepts the net, and says so only when it is to be simulated. So it is with a tuple or record of which a "
+    "component is known before a token is looked for (a constant, or a variable that stands elsewhere, too), if a "
+    "component is computed: (n + 1, p), (n, 1 + 1), {a = f n, b = p}. It makes a pattern of it. pn2code takes what is "
+    "written.",
+)
+PATTERN_REPEATS = register(
+    "pattern-repeats",
+    "a pattern has a variable twice",
+    "Of a variable that is twice in the pattern of an input arc, (n, n) or [n, n] or {a = n, b = n}, CPN Tools binds "
+    "one, and does not compare the other one: it may take a token whose parts differ, and stop with `Subtract` or an "
+    "`InternalError` when the transition occurs, in simulations and in state spaces. An equation of a guard, "
+    "p = (n, n), holds there whatever the other one is, so that the transition occurs where it should not. Where the "
+    "variable has its value before, from other arcs or equations, it depends on the order in which CPN Tools binds; "
+    "there is a warning if it may go wrong. pn2code requires the parts to be equal.",
 )
 ENGINE_FIELDS = register(
     "engine-field-order",

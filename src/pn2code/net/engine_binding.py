@@ -17,6 +17,7 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Exp, Symbol
+from pn2code.net.engine_order import faults
 from pn2code.net.engine_parts import PartReader
 from pn2code.net.engine_search import LargeError, StuckError, UndecidedError, search
 from pn2code.net.engine_tables import BrokenError, Tables
@@ -52,11 +53,17 @@ class Answer:
             break, or a variable that is twice in a coefficient or a condition is not known.
         names: of the last but two: variables that get no value.
         parted: an arc at which the tables break or from which on they are wrong, and an earlier one from its place.
+        odd: arcs that it may write as patterns, and that are none.
+        is_odd: whether it does so with one, whatever it chooses.
+        repeated: variables that are twice in a pattern, and that it may not compare.
     """
 
     kind: Kind
     names: frozenset[Symbol] = frozenset()
     parted: tuple[int, int] | None = None
+    odd: frozenset[int] = frozenset()
+    is_odd: bool = False
+    repeated: frozenset[Symbol] = frozenset()
 
 
 def examine(
@@ -81,7 +88,7 @@ def examine(
         arc = arcs[i]
         earlier = first.setdefault(arc.node.id, i)
         try:
-            tables.arc(arc.node.id, reader.summands(arc.inscription.value, arc.inscription.form))
+            tables.arc(arc.node.id, reader.summands(arc.inscription.value, arc.inscription.form), i)
         except BrokenError:
             return Answer("tables", parted=(i, earlier))
         if tables.is_parted and parted is None:
@@ -100,4 +107,8 @@ def examine(
         return Answer("undecided", parted=parted)
     except BrokenError as error:
         return Answer("repeats" if str(error) == "get_vids" else "tables", parted=parted)
-    return Answer("", parted=parted)
+    wrong = [faults(tables, group, is_small) for group in tables.groups]
+    odd = frozenset(i for x in wrong for i in x.arcs)
+    repeated = frozenset(s for x in wrong for s in x.repeated)
+    is_odd = any(x.is_certain for x in wrong)
+    return Answer("", parted=parted, odd=odd, is_odd=is_odd, repeated=repeated)

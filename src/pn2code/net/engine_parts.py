@@ -87,7 +87,7 @@ class PartReader:
         yield self._summand(e, coefficient, delay)
 
     def _summand(self, e: Exp, coefficient: Seen | None, delay: Seen) -> Summand:
-        is_pattern = self._is_pattern(e)
+        is_pattern = self.is_pattern(e)
         if isinstance(e, RecordExp):
             entries = tuple(self._seen(x) for _, x in e.fields)
             return Summand(coefficient, delay, entries, True, is_pattern)
@@ -108,9 +108,9 @@ class PartReader:
         return Item(None, (a.seen, b.seen))
 
     def _side(self, e: Exp) -> Side:
-        return Side(self._seen(e), self._is_pattern(e))
+        return Side(self._seen(e), self.is_pattern(e))
 
-    def _is_pattern(self, e: Exp) -> bool:
+    def is_pattern(self, e: Exp) -> bool:
         """Whether SML takes it for a pattern: not with a constant twice, which would be a variable there."""
         pattern = self._terms.pattern(e)
         if pattern is None:

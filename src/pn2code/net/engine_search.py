@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Symbol
-from pn2code.net.engine_tables import BrokenError, Group, Leaf, Name, Tables
+from pn2code.net.engine_tables import BrokenError, Condition, Group, Leaf, Name, Tables
 
 MOST = 20_000
 """Markings that are looked at; where there are more, it is not known whether there is an order."""
@@ -47,10 +47,25 @@ class LargeError(Exception):
 
 
 @frozen
-class _Step:
+class Step:
+    """A step: what must be known and open before, and is so afterwards; what it costs CPN Tools.
+
+    Args:
+        stands: the number that it makes equal to a variable, which CPN Tools does not compare if both have values.
+    """
+
     needs: int
     gives: int
+    weight: int
     may_rebind: bool = False
+    stands: frozenset[int] = frozenset()
+
+    def after(self, marking: int) -> int | None:
+        """The marking that it leads to; None: it cannot be taken."""
+        rest = marking & ~self.needs
+        if self.needs & ~marking or (rest & self.gives and not self.may_rebind):
+            return None
+        return rest | self.gives
 
     @property
     def tests(self) -> bool:
@@ -59,7 +74,7 @@ class _Step:
 
 
 @frozen
-class _Lookup:
+class Lookup:
     """A summand whose tokens are found by their known components; `keys`: the components that may be known.
 
     Instead of a step for each subset of these: one that can be taken gives no name that has a value already, so that
@@ -70,6 +85,8 @@ class _Lookup:
     keys: tuple[int, ...]
     has_constant: bool
     gives: int
+    leaf: Leaf
+    weight: int = 20
 
     def after(self, marking: int) -> int | None:
         """The marking that it leads to; None: it cannot be taken."""
@@ -92,7 +109,7 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
         BrokenError: CPN Tools' check ends with an internal error.
     """
     found = tables.groups[group]
-    made = _Steps(tables, found)
+    made = Steps(tables, found)
     steps = made.all(is_small)
     every = (1 << found.count) - 1
     start = ((1 << (len(found.arcs) + len(found.conditions))) - 1) << found.count
@@ -110,32 +127,37 @@ def search(tables: Tables, group: int, is_small: Callable[[Symbol], bool]) -> No
             raise UndecidedError
         if (marking & every).bit_count() > best.bit_count() or not best:
             best = marking & every
-        for s in others:
-            rest = marking & ~s.needs
-            if s.needs & ~marking == 0 and (s.may_rebind or not rest & s.gives):
-                stack.append(rest | s.gives)
+        stack += [after for s in others if (after := s.after(marking)) is not None]
         stack += [after for x in made.lookups if (after := x.after(marking)) is not None]
     names = frozenset(n for n in found.names if not best >> tables.known[n].number & 1)
     raise StuckError(names or frozenset(found.names))
 
 
-def _settled(marking: int, tests: list[_Step]) -> int:
+def _settled(marking: int, tests: list[Step]) -> int:
     for s in tests:
         if s.needs & ~marking == 0:
             marking = marking & ~s.needs | s.gives
     return marking
 
 
-class _Steps:
+class Steps:
+    """The steps of a group."""
+
     def __init__(self, tables: Tables, group: Group) -> None:
         self._tables = tables
         self._group = group
         self._length = group.count + len(group.arcs) + len(group.conditions)
-        self.lookups: list[_Lookup] = []
+        self.lookups: list[Lookup] = []
         """Once all steps were asked for."""
 
-    def all(self, is_small: Callable[[Symbol], bool]) -> list[_Step]:
-        found: list[_Step] = []
+    def all(self, is_small: Callable[[Symbol], bool]) -> list[Step]:
+        """All but the lookups.
+
+        Raises:
+            LargeError: a variable could get its value by trying only, and has too many.
+            BrokenError: CPN Tools' check ends with an internal error.
+        """
+        found: list[Step] = []
         at = self._group.count
         for arc in self._group.arcs:
             names = [n for leaf in arc.leaves for n in leaf.names()]
@@ -143,17 +165,17 @@ class _Steps:
                 leaf = arc.leaves[0]
                 names += [*leaf.delay, *(leaf.coefficient or ())]
             tested = self._bits(names)
-            found.append(_Step(tested | 1 << at, tested))
+            found.append(Step(tested | 1 << at, tested, 10))
             for leaf in arc.leaves:
                 found += self._leaf(leaf, 1 << at, arc.is_sum)
             at += 1
         for c in self._group.conditions:
             tested = self._bits(c.tested)
-            found.append(_Step(tested | 1 << at, tested))
+            found.append(Step(tested | 1 << at, tested, 2))
             for (names_of, is_pattern), (others, _) in (c.sides, c.sides[::-1]) if c.sides else ():
                 if is_pattern:
                     needs, gives = self._bits(others), self._bits(names_of, is_bindable=True)
-                    found.append(_Step(needs | 1 << at, needs | gives, True))
+                    found.append(Step(needs | 1 << at, needs | gives, 1, True, self._stands(c)))
             at += 1
         for name in list(self._group.names):
             known = self._tables.known[name]
@@ -162,10 +184,10 @@ class _Steps:
             assert isinstance(name, Symbol)
             if not is_small(name):
                 raise LargeError(name)
-            found.append(_Step(0, 1 << known.number))
+            found.append(Step(0, 1 << known.number, 1000))
         return found
 
-    def _leaf(self, leaf: Leaf, open_: int, is_sum: bool) -> Iterator[_Step]:
+    def _leaf(self, leaf: Leaf, open_: int, is_sum: bool) -> Iterator[Step]:
         if leaf.coefficient == () and leaf.is_pattern:
             yield self._taken(leaf, open_, is_sum)
         if leaf.coefficient or not leaf.is_record or len(leaf.entries) < 2:
@@ -178,12 +200,18 @@ class _Steps:
         if keys or constant:
             step = self._taken(leaf, open_, is_sum)
             bits = tuple(map(self._bits, keys))
-            self.lookups.append(_Lookup(step.needs, bits, bool(constant), step.gives))
+            self.lookups.append(Lookup(step.needs, bits, bool(constant), step.gives, leaf))
 
-    def _taken(self, leaf: Leaf, open_: int, is_sum: bool) -> _Step:
+    def _taken(self, leaf: Leaf, open_: int, is_sum: bool) -> Step:
         delay = self._bits(leaf.delay)
         gives = self._bits(leaf.names(), is_bindable=True) | delay
-        return _Step(open_ | delay, gives | (open_ if is_sum else 0))
+        return Step(open_ | delay, gives | (open_ if is_sum else 0), 100)
+
+    def _stands(self, condition: Condition) -> frozenset[int]:
+        """The numbers in a condition that makes one equal to the variable for which it stands."""
+        names = condition.tested
+        is_own = any(isinstance(n, int) and self._tables.twice[n] in names for n in names)
+        return frozenset(n for n in names if isinstance(n, int)) if is_own else frozenset()
 
     def _is_key(self, names: tuple[Name, ...]) -> bool:
         return all(n in self._tables.known and self._tables.known[n].expressions > 1 for n in names)

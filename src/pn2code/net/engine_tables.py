@@ -39,8 +39,9 @@ class Known:
 
 @frozen
 class Leaf:
-    """A summand with its names."""
+    """A summand with its names, and the number of its arc."""
 
+    arc: int
     coefficient: tuple[Name, ...] | None
     delay: tuple[Name, ...]
     entries: tuple[tuple[Name, ...], ...]
@@ -87,6 +88,8 @@ class Tables:
         self.groups: dict[int, Group] = {}
         self.is_parted = False
         """Whether an arc from a place that has been met has variables of another group."""
+        self.twice: dict[int, Symbol] = {}
+        """The variable for which a number stands."""
         self._places: dict[str, int] = {}
         self._next = 0
         self._second = 0
@@ -97,13 +100,13 @@ class Tables:
 
     # --- expressions
 
-    def arc(self, place: str, summands: Iterable[Summand]) -> None:
+    def arc(self, place: str, summands: Iterable[Summand], number: int = 0) -> None:
         """An arc that takes tokens from a place.
 
         Raises:
             BrokenError: as CPN Tools.
         """
-        leaves = [self._leaf(s) for s in summands]
+        leaves = [self._leaf(s, number) for s in summands]
         expression = ArcExpression(place, leaves, len(leaves) > 1)
         group = self._places.get(place)
         if group is None:
@@ -141,7 +144,7 @@ class Tables:
         tested = tuple(n for names_of, _ in sides for n in names_of)
         self._insert(Condition(tested, tuple(sides)))
 
-    def _leaf(self, s: Summand) -> Leaf:
+    def _leaf(self, s: Summand, number: int) -> Leaf:
         delay = self._own(self._names(s.delay))
         coefficient = None if s.coefficient is None else tuple(self._names(s.coefficient))
         entries = [self._names(seen) for seen in s.entries]
@@ -149,7 +152,7 @@ class Tables:
             entries = [self._own(names) for names in entries]
         self._keep() if s.is_pattern else self._forget()
         whole = tuple(map(tuple, entries))
-        return Leaf(coefficient, tuple(delay), whole, s.is_record, s.is_pattern)
+        return Leaf(number, coefficient, tuple(delay), whole, s.is_record, s.is_pattern)
 
     # --- variables
 
@@ -229,7 +232,8 @@ class Tables:
         self.known[name] = Known(group, found.count)
         found.count += 1
         found.names.append(name)
-        if other is not None:
+        if isinstance(other, Symbol) and isinstance(name, int):
+            self.twice[name] = other
             equal = (((name,), True), ((other,), True))
             self._add(group, Condition((name, other), equal))
 

@@ -34,8 +34,8 @@ def warn(pages: Iterable[TypedPage], d: Diagnostics) -> None:
             if mentioned(place.initial):
                 d.warning(
                     INITIAL_INSTANCE,
-                    f"the initial marking of `{place.name}` uses `inst ()`, which may have another value in CPN "
-                    "Tools there",
+                    f"the initial marking of `{place.name}` uses `inst ()`: here that is the number of the page "
+                    "instance (1, 2, ...); CPN Tools has the same number for all instances there, mostly another one",
                     place.origin,
                     hint="let a transition put these tokens, or give each instance its number as a token of a "
                     "socket",

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import TCon, TFun, TRecord, Type
 from pn2code.ml.typing.matches import coverage
 from pn2code.net.enumerable import SMALL, size
 from pn2code.net.uses import children, pattern_variables
@@ -40,6 +41,8 @@ HARMLESS = frozenset(
     }
 )
 """Built-in functions that raise nothing but an Overflow, if the functions that they are given raise nothing."""
+_VALUES = frozenset({"int", "IntInf.int", "real", "string", "char", "bool", "list", "option"})
+"""Types of which no value is a function, unless a part of it is."""
 DIVIDING = frozenset(f"{s}.{x}" for s in ("Int", "IntInf") for x in ("div", "mod", "quot", "rem"))
 """Those that raise nothing if they divide by a number that is written there, and is not 0."""
 
@@ -64,6 +67,8 @@ class Raising:
                 return self.raise_in(x)
             case core.Builtin(name="Colset.all", colset=colset):
                 return colset is None or size(colset, SMALL) is None
+            case core.Builtin("Ref.!", type=TFun(_, result)):
+                return _may_be_function(result)
             case core.Builtin(name=name):
                 return name not in HARMLESS
             case core.Var(symbol=symbol):
@@ -92,3 +97,14 @@ class Raising:
     def _is_complete(self, patterns: Iterable[core.Pat]) -> bool:
         found = coverage([[p] for p in patterns], self._datatypes)
         return found is not None and found.missing is None
+
+
+def _may_be_function(type_: Type) -> bool:
+    """Whether a value of a type may be, or hold, a function that raises an exception."""
+    match type_:
+        case TCon(name, args):
+            return name not in _VALUES or any(map(_may_be_function, args))
+        case TRecord(fields):
+            return any(_may_be_function(x) for _, x in fields)
+        case _:
+            return True

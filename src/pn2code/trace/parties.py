@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition
 
 SIMULATORS = frozenset({"simulate", "reference"})
@@ -52,6 +53,18 @@ class Parties:
         """One program runs the whole net."""
         owner = (0,) * len(net.transitions)
         return Parties((SUPERVISOR,), owner, frozenset(), (), digests, is_cell=False)
+
+    @staticmethod
+    def of(partition: Partition, digests: frozenset[str] = frozenset()) -> Parties:
+        """The programs of a cell."""
+        return Parties(
+            names=tuple(o.name for o in partition.owners),
+            owner=partition.transition_owner,
+            messages=frozenset(c.place for c in partition.channels),
+            final=partition.final_places,
+            digests=digests,
+            inputs=frozenset(i.place for i in partition.inputs),
+        )
 
     @staticmethod
     def unknown(net: FlatNet) -> Parties:

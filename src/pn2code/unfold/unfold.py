@@ -32,7 +32,7 @@ from pn2code.semantics.values.data import Value, zero_signs
 from pn2code.semantics.values.multiset import MultiSet
 from pn2code.unfold.codes import UNFOLDING_FAULT, UNFOLDING_TOO_LARGE, UNSUPPORTED_UNFOLDING
 from pn2code.unfold.net import Fault, UnfoldedPlace, UnfoldedTransition, Unfolding
-from pn2code.unfold.purity import impure
+from pn2code.unfold.purity import constants, impure
 
 MAX_PLACES = 200_000
 MAX_TRANSITIONS = 1_000_000
@@ -104,6 +104,7 @@ def check(net: FlatNet, d: Diagnostics, *, with_code: bool = False) -> None:
                 _origin(net, p),
                 hint=hint,
             )
+    constant = constants(net)
     for t in net.transitions:
         if t.code is not None and not with_code:
             d.error(
@@ -113,7 +114,7 @@ def check(net: FlatNet, d: Diagnostics, *, with_code: bool = False) -> None:
                 hint=hint,
             )
         for e, part in _inscriptions(t):
-            found = impure(e, net.program)
+            found = impure(e, net.program, constant)
             if found:
                 said = f"transition `{t.name}` uses `{found}`: what it gives does not depend on the binding alone"
                 d.error(UNSUPPORTED_UNFOLDING, said, part, hint=hint)

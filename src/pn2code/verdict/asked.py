@@ -42,6 +42,11 @@ class Asked:
         plain = (p for p in self.properties.properties if not is_about_bindings(p))
         return replace(self.properties, properties=tuple(plain))
 
+    def endings_of_net(self, ending: Sequence[int]) -> tuple[int, ...]:
+        """Of the properties that end a swarm those that are asked of the closed net of a cell."""
+        plain = self.plain.properties
+        return tuple(i for i in ending if plain[i].of_net)
+
 
 def gather(
     opened: OpenNet, texts: Sequence[str], file: Path | None, d: Diagnostics, *, found: bool

@@ -21,6 +21,7 @@ from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import COUNTED, Exploration
+from pn2code.verify.report import swarm_text
 
 Answers = tuple[Answer, ...]
 
@@ -48,7 +49,11 @@ def look(
     assert opened.config is not None, "it has been divided"
     if found.why in ("interrupted", "error") or options.interrupted():
         return ()
-    is_small = found.complete or found.why in ("decided", "approximation", COUNTED)
+    is_small = (
+        limits.swarm is not None
+        or found.complete
+        or found.why in ("decided", "approximation", COUNTED)
+    )
     is_open = not is_small and limits.deadline.is_over()
     own = Diagnostics()
     answers = tuple(
@@ -86,13 +91,15 @@ _NOT_LOOKED = "whether programs stop or come too late is for the checks of the s
 def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
     """That the cell can come to its end is also for the checks of the supervisor: they know when programs stop."""
     a = replace(a, assumes=f"{a.assumes}; {premise}" if premise else a.assumes)
-    if a.answer != "yes":
+    if a.answer == "no" or (a.answer != "yes" and a.swarm is None):
         return a
     if control is None:
-        return replace(a, answer="inconclusive", why=_NOT_LOOKED)
+        return a if a.swarm is not None else replace(a, answer="inconclusive", why=_NOT_LOOKED)
     ends = next(c for c in control.checks if c.name == BLOCKING)
     if ends.answer == "no":
         return replace(a, answer="no", why=f"`{BLOCKING}`: {ends.says}")
+    if a.answer != "yes":
+        return a
     if control.stops or (ends.answer == "unknown" and ends.why != "speeds"):
         return replace(a, answer="inconclusive", why=control.stops or clause(ends.why or ""))
     return a
@@ -150,6 +157,8 @@ def _rests(a: Answer) -> Iterator[str]:
 
 
 def _counts(a: Answer) -> str:
+    if a.swarm is not None:
+        return f"{swarm_text.seen(a.swarm)}, {a.seconds:.1f} s"
     space = " of the reduced space" * a.reduced
     return (
         f"{a.nodes:,} markings, {a.arcs:,} arcs{space} of a net with {a.places} places and "

@@ -40,7 +40,7 @@ def explored(
         partition: the cell; None: the net is none.
     """
     first = limits.counts_from
-    plain = not (limits.reductions or limits.approximation or options.graph)
+    plain = not (limits.reductions or limits.approximation or limits.sweeps or options.graph)
     is_enough = limits.max_states is None or (first is not None and limits.max_states > first)
     if first is None or not may_count or not plain or not is_enough or opened.flat.timed:
         return explore(opened.flat, opened.storage, limits, d, options)

@@ -38,6 +38,8 @@ def look(
     d: Diagnostics,
     asked: m.Properties = m.Properties(),  # noqa: B008 - frozen
     graph: Path | None = None,
+    *,
+    checks: bool = True,
 ) -> Control | None:
     """All checks, and what the explorer says of properties; None after an error.
 
@@ -50,6 +52,7 @@ def look(
         d: gets the errors.
         asked: the properties.
         graph: where the graph of the cell is written, if it is small enough; None: nowhere.
+        checks: whether the checks are asked for, and not only properties.
     """
     config = opened.config
     assert config is not None, "it has been divided"
@@ -62,7 +65,7 @@ def look(
         capacities = declared(partition, config, d)
         return not_looked(found.why, partition, capacities, found, poses, bounds)
     cut = ""
-    if is_partial and found.why != "error" and not opened.flat.timed:
+    if is_partial and found.why != "error" and not opened.flat.timed and limits.swarm is None:
         # All of it will not be seen either, but what is wrong in a part is wrong.
         most = max(found.nodes, LEAST_STATES)
         if limits.max_states is None or most < limits.max_states:
@@ -85,6 +88,7 @@ def look(
         primitives=config.primitives,
         arms=arms,
         graph=graph,
+        checks=checks,
     )
     own = Diagnostics()
     looked = control.examine(partition, plan, replace(limits, traces=0), own, found)

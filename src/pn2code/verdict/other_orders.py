@@ -96,7 +96,8 @@ def _looked(
 ) -> OtherOrders:
     options.stage("asking conditions in other orders ...")
     most = limits.max_states if found.complete else max(found.nodes, 1)
-    own = replace(limits, max_states=most, graph=False, traces=0)
+    sweeps = found.sweep is not None or limits.sweeps
+    own = replace(limits, max_states=most, graph=False, traces=0, sweeps=sweeps)
     asked = ExploreOptions(
         traces=options.traces,
         stem=f"{options.stem}.asked",

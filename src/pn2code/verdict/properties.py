@@ -132,7 +132,8 @@ def _bindings_of_cell(
     seen = control.found
     is_choosing = False
     about = replace(asked.properties, properties=group)
-    if running is not None and seen is not None and (seen.complete or seen.why == "decided"):
+    is_enough = seen is not None and (seen.complete or seen.why == "decided" or bool(seen.swarm))
+    if running is not None and is_enough:
         split = Split.of(running.net, asked.properties, group)
         # Of parts of a transition of the supervisor it is not seen which binding comes first.
         is_choosing = any(

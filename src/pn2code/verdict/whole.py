@@ -235,6 +235,8 @@ def look(
     of_net = own_options or options
     if cell is not None and is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(cell, of_net.sizes))
+    if cell is not None:
+        of_net = replace(of_net, ending=asked.endings_of_net(of_net.ending))
     may_count = is_cell and properties.are_of_states(asked)
     found = closed.explored(opened, part, of_net, d, may_count=may_count, partition=cell)
     if found is None:
@@ -245,13 +247,26 @@ def look(
         found = unfolded.look(opened, asked, found, limits, own_options or options, why_not)
     # The closed net of a cell has its answers before the cell takes all the time.
     soon = other_orders.look(opened, found, part, options) if is_cell else found
+    if cell is not None:
+        # What is asked of its programs needs the graph: markings are forgotten where there is no memory for it only.
+        limits = replace(limits, sweeps=False if limits.sweeps is False else None)
+        options = replace(options, needs_graph=True)
     control: Control | None = None
     if cell is not None and asks_control:
         options.stage("exploring the cell as its programs run ...")
         has_more = checks.channel_model
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
         control = controller.look(
-            opened, cell, found, part, options, folder, d, asked.plain, checks.graph
+            opened,
+            cell,
+            found,
+            part,
+            options,
+            folder,
+            d,
+            asked.plain,
+            checks.graph,
+            checks=checks.controller,
         )
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: channel_model.Answers = ()
@@ -383,7 +398,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
             guard_order.not_there(opened.flat, t.index)
             or "CPN Tools may see first that tokens are missing, or that another condition is false, and raise nothing"
         )
-    if error.get("node") is None and found.swarm is None:
+    if error.get("node") is None and found.swarm is None and found.sweep is None:
         notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")

@@ -104,6 +104,14 @@ REDUCTION_NOT_POSSIBLE = register(
     "that is possible; elsewhere it goes by transitions, and needs an untimed net in which no inscription draws random "
     "numbers, looks at files or clocks, or asks for the number of steps. The net is explored without the reduction.",
 )
+SWEEP_NOT_POSSIBLE = register(
+    "sweep-not-possible",
+    "markings cannot be forgotten while the net is explored",
+    "`--sweep` forgets markings that cannot come back. For that some weighted number of tokens must never become "
+    "smaller, and become greater now and then; or time must go on (in a net whose times are whole numbers, without "
+    "`--reduce time`). Places count of which each change is known exactly, so those whose arcs take or put as many "
+    "tokens as a variable says do not. The net is explored without it.",
+)
 REDUCTION_MISMATCH = register(
     "reduction-mismatch",
     "the compiled net differs from the net on which a reduction rests",

@@ -360,7 +360,6 @@ def test_both_arc_has_terms() -> None:
         # a summand that shares a variable comes first
         ("in A : n\nin B : m\nin P : (n, k)", ["term 0.0", "term 2.0", "term 1.0"]),
         # repeated variables are tests
-        ("in P : (n, n)", ["term 0.0"]),
         ("in A : n\nin B : n", ["term 0.0"]),
         # guard equations, in either direction and in chains
         ("guard [k = f m, m = f n]\nin A : n\nout A : k", ["term 0.0", "guard 1 m", "guard 0 k"]),
@@ -400,6 +399,14 @@ trans X
 """
     text = "\n".join("  " + line for line in body.split("\n"))
     assert plan(transition(places + text)) == expected
+
+
+def test_plan_of_a_variable_twice() -> None:
+    result, d = run("place P : PAIR\ntrans X\n  in P : (n, n)")
+    assert result is not None
+    (t,) = result.pages[0].transitions
+    assert plan(t) == ["term 0.0"]
+    assert [x.code for x in d] == ["pattern-repeats"]
 
 
 def test_variables_are_sorted_code_outputs_last() -> None:

@@ -203,7 +203,7 @@ def test_a_binding_that_raises() -> None:
     [
         ("out P : n\n          code input (n); action ()", "transition `Top.T` has a code segment"),
         ("out P : discrete(1, 2)", "transition `Top.T` uses `Random.discrete`"),
-        ("out P : f n", "transition `Top.T` uses `Ref.!`"),
+        ("out P : f n", "transition `Top.T` uses `Ref."),
         ("out Q : n", "place `Top.Q` is timed"),
     ],
 )
@@ -215,7 +215,7 @@ def test_what_cannot_be_unfolded(line: str, said: str) -> None:
           colset TI = int timed;
           var n: INT;
           globref count = 0;
-          fun f x = x + !count
+          fun f x = (count := x; x + !count)
           page Top
             place P : INT = 1`1
             place {"Q : TI" if "Q" in line else "Q : INT"}

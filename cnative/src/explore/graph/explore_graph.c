@@ -8,6 +8,7 @@
 #include "explore_blocks.h"
 #include "../query/explore_query.h"
 #include "../search/explore_successors.h"
+#include "../sweep/explore_sweep.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -330,6 +331,10 @@ void ex_graph_json(ex_run_t *run, FILE *out)
         (void)fprintf(out, "null");
     }
     (void)fprintf(out, ", ");
+    if (run->sweep != NULL) {
+        ex_sweep_traces_json(run, out);
+        return;
+    }
     traces_json(run, out);
 }
 

@@ -7,6 +7,7 @@
  */
 #include "explore_query.h"
 #include "../swarm/explore_swarm.h"
+#include "../sweep/explore_sweep.h"
 #include "../search/explore_successors.h"
 #include "explore_early.h"
 
@@ -174,6 +175,9 @@ void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
             if (run->swarm != NULL) {
                 ex_swarm_decided(worker, question, i, found);
             }
+            if (run->sweep != NULL) {
+                ex_sweep_decided(run, i);
+            }
             if (atomic_fetch_sub(&queries->open, 1U) == 1U) {
                 ex_stop(run, EX_DECIDED);
             }
@@ -263,6 +267,11 @@ static void give_most(const ex_run_t *run, ex_question_t *question)
 /* What the states alone say, without the way there. False: nothing. */
 static bool answer_by_states(const ex_run_t *run, ex_question_t *question)
 {
+    if ((question->kind == EX_ASK_ENDS) && atomic_load(&question->is_decided)) { /* explore_trap.c */
+        question->answer = EX_NO;
+        question->why = "endless";
+        return true;
+    }
     if (!is_early(run->queries, question)) {
         return false;
     }
@@ -310,7 +319,7 @@ static void answer_roughly(ex_run_t *run)
         } else if (atomic_load(&run->why) != (int)EX_COMPLETE) {
             ex_doubt(run, question);
         } else {
-            question->why = run->options.has_graph ? "memory" : "no graph";
+            question->why = (run->sweep != NULL) ? "sweep" : (run->options.has_graph ? "memory" : "no graph");
         }
     }
 }
@@ -322,8 +331,10 @@ void ex_early_answer(ex_run_t *run)
     finding_t finding = { .run = run };
     ex_graph_t graph;
     forget(&finding);
-    if ((finding.open > 0U) && is_exact && (why != (int)EX_INTERRUPTED) && (why < (int)EX_CAPACITY)
-        && ex_rescan_make(run, &graph)) {
+    if (run->sweep != NULL) {
+        ex_sweep_answer(run);
+    } else if ((finding.open > 0U) && is_exact && (why != (int)EX_INTERRUPTED) && (why < (int)EX_CAPACITY)
+               && ex_rescan_make(run, &graph)) {
         (void)memcpy(run->worker[0].early->fired, run->worker[0].fired,
                      pn_net.transition_count * sizeof *run->worker[0].fired);
         (void)ex_rescan(run, &graph, find, &finding);

@@ -4,6 +4,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "explore_search.h"
+#include "../sweep/explore_sweep.h"
 
 #include <string.h>
 
@@ -98,6 +99,9 @@ bool ex_add_new(ex_search_t *own, const ex_key_t *key)
 {
     ex_level_t *level = own->level;
     const bool is_stack = level->run->options.is_depth_first;
+    if (level->run->sweep != NULL) {
+        return ex_sweep_found(level->run, key);
+    }
     if ((own->out != NULL) && (own->out->count == level->capacity) && !is_stack) {
         (void)pthread_mutex_lock(&level->run->gate);
         ex_hand_over(own);

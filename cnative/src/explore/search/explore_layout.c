@@ -358,7 +358,7 @@ static bool refill(ex_run_t *run, change_t *change)
     ex_free(&run->memory, key, bytes);
     if (is_fine) {
         ex_store_free(store);
-        *store = new;
+        ex_store_replace(store, &new);
         atomic_store(&store->used, count);
     }
     return is_fine;

@@ -16,6 +16,7 @@
 #include "../explore_bounds.h"
 #include "../query/explore_early.h"
 #include "../swarm/explore_swarm.h"
+#include "../sweep/explore_sweep.h"
 #include "explore_search.h"
 
 #include <math.h>
@@ -76,7 +77,7 @@ bool ex_batch_begin(ex_worker_t *worker)
     /* What other threads are inserting now is not counted yet, but there is room above the limit. */
     return run->options.is_bitstate
            || ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)EX_BATCH)) <= store->limit)
-           || ex_pause(worker);
+           || ((run->sweep != NULL) && ex_sweep_forget(run)) || ex_pause(worker);
 }
 
 static void exchange(ex_search_t *own, uint32_t i, uint32_t k)
@@ -152,8 +153,7 @@ static bool flush(ex_worker_t *worker)
     return goes_on && !ex_is_stopping(run);
 }
 
-/* The same, and what has not come into the batch yet. */
-static bool flush_all(ex_worker_t *worker)
+bool ex_flush_all(ex_worker_t *worker)
 {
     return ((worker->search->flat == NULL) || ex_flat_finish(worker)) && flush(worker);
 }
@@ -214,8 +214,9 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 {
     const bool has_begun = atomic_load(&run->has_begun);
     const ex_level_t *search = has_begun ? run->level : NULL;
-    const uint64_t states = has_begun ? atomic_load_explicit(&run->store.used, memory_order_relaxed) : 0U;
-    progress->states = states;
+    const uint64_t known = has_begun ? atomic_load_explicit(&run->store.used, memory_order_relaxed) : 0U;
+    const uint64_t states = (has_begun && (run->sweep != NULL)) ? ex_sweep_states(run) : known;
+    *progress = (ex_progress_t){ .states = states }; /* before the search there is nothing else */
     if (search != NULL) {
         const uint64_t expanded = atomic_load_explicit(&search->expanded, memory_order_relaxed);
         progress->arcs = atomic_load_explicit(&search->arcs, memory_order_relaxed);
@@ -279,6 +280,9 @@ bool ex_expand_state(ex_worker_t *worker, const ex_key_t *key)
     }
     if ((worker->run->swarm != NULL) && (found == EX_DEAD)) {
         ex_swarm_dead(worker);
+    }
+    if ((worker->run->sweep != NULL) && (found == EX_DEAD)) {
+        ex_sweep_dead(worker->run);
     }
     if ((worker->states % (uint64_t)REPORTED) == 0U) {
         report(worker);
@@ -421,7 +425,7 @@ static bool expand_chunk(ex_worker_t *worker, ex_chunk_t *chunk)
     if (goes_on) {
         own->expanding = NULL;
     }
-    return goes_on && flush_all(worker);
+    return goes_on && ex_flush_all(worker);
 }
 
 /* Depth first: the top of the stack, until it is empty. */
@@ -445,7 +449,7 @@ static bool expand_stack(ex_worker_t *worker)
         if ((search->run->swarm != NULL) && !ex_swarm_at(worker, &key, own->depth - 1U)) {
             return false;
         }
-        if (!ex_expand_state(worker, &key) || !flush_all(worker)) {
+        if (!ex_expand_state(worker, &key) || !ex_flush_all(worker)) {
             return false;
         }
     }
@@ -544,7 +548,7 @@ static bool begin(ex_run_t *run, ex_level_t *search)
     }
     ex_chunk_put(search, chunk, &run->initial, 0U);
     search->now = chunk;
-    return true;
+    return (run->sweep == NULL) || ex_sweep_begin(run);
 }
 
 /* States that have been found and not expanded belong to the bounds, too. */
@@ -573,6 +577,9 @@ bool ex_see_rest(ex_run_t *run)
         return true;
     }
     run->worker[0].cx.error = PN_OK; /* has been noted */
+    if (run->sweep != NULL) {
+        return ex_sweep_see_rest(run);
+    }
     bool is_seen = see_chunks(run, search->now, 0U, true) && see_chunks(run, search->next, 0U, true);
     for (uint32_t i = 0U; is_seen && (i < run->options.threads); i++) {
         const ex_search_t *own = run->worker[i].search;
@@ -601,7 +608,7 @@ double ex_rest_measure(ex_worker_t *teller, uint32_t most)
 
 static void sum_up(ex_run_t *run, const ex_level_t *search)
 {
-    run->nodes = atomic_load(&run->store.used);
+    run->nodes = (run->sweep != NULL) ? ex_sweep_states(run) : atomic_load(&run->store.used);
     run->depth = search->depth;
     for (uint32_t i = 0U; i < run->options.threads; i++) {
         const ex_worker_t *worker = &run->worker[i];
@@ -645,7 +652,7 @@ bool ex_explore(ex_run_t *run)
     const double cpu_started = ex_cpu_clock();
     if (begin(run, search)) {
         atomic_store(&run->has_begun, true);
-        ex_parallel(run, run->options.is_walk ? ex_walk : work, NULL);
+        ex_parallel(run, (run->sweep != NULL) ? ex_sweep_work : (run->options.is_walk ? ex_walk : work), NULL);
     }
     sum_up(run, search);
     if (run->options.is_bitstate) {

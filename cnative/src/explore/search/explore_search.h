@@ -98,7 +98,9 @@ static inline bool ex_is_near_limit(const ex_run_t *run)
 
 /* A key that has been found, into the batch. False when the run stops. */
 bool ex_take(ex_worker_t *worker, const ex_key_t *key, uint64_t hash);
-/* A little before that. */
+/* Inserts all that has been found. False when the run stops. */
+bool ex_flush_all(ex_worker_t *worker);
+/* A little before ex_take. */
 static inline void ex_take_soon(const ex_search_t *own, uint64_t hash)
 {
     __builtin_prefetch(&own->recent[hash % (uint64_t)EX_RECENT], 1, 3);

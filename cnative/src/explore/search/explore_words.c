@@ -37,7 +37,7 @@ bool ex_words_make(ex_worker_t *worker)
 {
     const ex_run_t *run = worker->run;
     bool is_possible = run->codec->is_word && worker->search->is_exact && (run->reduction == NULL) && !pn_net.timed
-                       && (run->owner_of == NULL) && (run->programs == NULL);
+                       && (run->owner_of == NULL) && (run->programs == NULL) && (run->sweep == NULL);
     for (uint32_t t = 0U; is_possible && (t < pn_net.transition_count); t++) {
         is_possible = pn_net.transition[t].words != NULL;
     }

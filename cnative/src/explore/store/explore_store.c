@@ -10,6 +10,7 @@
  */
 #include "explore_words.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #if defined(__SSE2__) && !defined(__SANITIZE_THREAD__)
@@ -198,6 +199,17 @@ void ex_store_free(ex_store_t *store)
 {
     ex_free(store->memory, store->bucket, ex_store_bytes(store));
     store->bucket = NULL;
+}
+
+void ex_store_empty(ex_store_t *store)
+{
+    (void)memset(store->bucket, 0, ex_store_bytes(store));
+    atomic_store(&store->used, 0U);
+}
+
+void ex_store_replace(ex_store_t *store, const ex_store_t *new)
+{
+    (void)memcpy(store, new, offsetof(ex_store_t, used));
 }
 
 uint64_t ex_store_bytes(const ex_store_t *store)
@@ -470,9 +482,7 @@ static bool grow_to(ex_store_t *store, uint64_t buckets, const uint32_t width[EX
             ex_uncount(store->memory, ex_store_bytes(store) - ex_store_bytes(&new));
         }
     }
-    const uint64_t used = atomic_load(&store->used);
-    *store = new;
-    atomic_store(&store->used, used);
+    ex_store_replace(store, &new);
     return is_whole;
 }
 

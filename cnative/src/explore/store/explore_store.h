@@ -41,9 +41,14 @@ typedef enum ex_insertion {
 bool ex_store_make(ex_store_t *store, ex_memory_t *memory, const ex_team_t *team, bool is_word,
                    const uint32_t width[EX_KEY_WORDS], uint64_t keys);
 void ex_store_free(ex_store_t *store);
+/* Nothing is in it any more, and there is as much room as before. Nobody else uses it. */
+void ex_store_empty(ex_store_t *store);
 /* Makes room, and words of keys as wide as they have to be; does nothing when all is well. False when there is no
  * memory (the store stays as it was, or has lost keys: the run ends). Nobody else uses it. */
 bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS]);
+/* Another table takes the place of the store's, whose number of keys stays: others may read it at any time, to tell how
+ * far the exploration is. Nobody else uses the rest. */
+void ex_store_replace(ex_store_t *store, const ex_store_t *new);
 uint64_t ex_store_bytes(const ex_store_t *store);
 
 static inline void ex_store_prefetch(const ex_store_t *store, uint64_t hash)

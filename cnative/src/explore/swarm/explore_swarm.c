@@ -21,7 +21,7 @@ bool ex_swarm_make(ex_run_t *run)
     }
     run->swarm = swarm;
     swarm->dead_steps = -1;
-    swarm->way = ex_table(&run->memory, run->options.max_depth, sizeof *swarm->way);
+    swarm->way = ex_table(&run->memory, run->options.max_depth + ex_trap_room(), sizeof *swarm->way);
     /* Numbers that are near each other make very different ones. */
     swarm->random = (run->options.swarm * 0x9e3779b97f4a7c15U) | 1U;
     return (swarm->way != NULL) && ex_sketch_make(&run->worker[0], &swarm->sketch, (uint32_t)run->options.sketch);

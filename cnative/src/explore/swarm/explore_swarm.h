@@ -17,7 +17,9 @@ typedef struct ex_swarm {
     ex_sketch_t sketch;
     /* Of walks: which successor is next. */
     ex_key_t next;
-    uint64_t weight; /* of all that there are, so far */
+    uint64_t weight;      /* of all that there are, so far */
+    struct ex_trap *trap; /* of walks, where it is looked for one; NULL: it was not yet */
+    uint64_t trapped;     /* states that were looked at for that */
     /* The first dead state. */
     int64_t dead_steps; /* of its trace; -1: there is none */
     char dead_path[EX_PATH_SIZE];
@@ -40,5 +42,10 @@ void ex_swarm_json(ex_run_t *run, FILE *out);
 /* explore_walk.c: a successor of the state at hand; and from the initial state on at random, again and again. */
 bool ex_walk_take(ex_worker_t *worker, uint32_t transition, uint32_t times, const ex_key_t *key);
 void ex_walk(ex_worker_t *worker, void *user);
+
+/* explore_trap.c: whether the end can no longer be reached from the state at hand, of which that is asked; and how much
+ * longer a way may become meanwhile. */
+void ex_trap_look(ex_worker_t *worker);
+uint64_t ex_trap_room(void);
 
 #endif /* EXPLORE_SWARM_H */

@@ -71,5 +71,8 @@ void ex_walk(ex_worker_t *worker, void *user)
         if (run->swarm->depth == 0U) {
             return; /* nothing occurs at all */
         }
+        if ((run->swarm->depth == run->options.max_depth) && !ex_is_stopping(run) && !worker->failed) {
+            ex_trap_look(worker);
+        }
     }
 }

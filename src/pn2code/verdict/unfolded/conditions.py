@@ -44,6 +44,32 @@ class Sum:
     constant: int = 0
 
 
+@frozen
+class Counted:
+    """The numbers that a condition in CPN ML computes from numbers of tokens.
+
+    Args:
+        sums: of each, how often the tokens of a place of the net count at most, and what is added.
+    """
+
+    sums: tuple[tuple[Mapping[int, int], int], ...] = ()
+
+    def may_exceed(self, most: int, bounds: Mapping[int, int]) -> int | None:
+        """A place that may make one of them too large; None: none does.
+
+        Args:
+            most: the greatest number.
+            bounds: by place, the most tokens that it holds; of others it is not known.
+        """
+        for weights, constant in self.sums:
+            unknown = next((p for p in weights if p not in bounds), None)
+            if unknown is not None:
+                return unknown
+            if sum(n * bounds[p] for p, n in weights.items()) + abs(constant) > most:
+                return max(weights, key=lambda p: (bounds[p], -p))
+        return None
+
+
 @record
 class Conditions:
     """Translates the conditions of the properties of a net.
@@ -53,12 +79,14 @@ class Conditions:
         unfolding: the net unfolded.
         predicates: conditions by number.
         used: indices of the unfolded places that are named by themselves, in `name`.
+        computed: by number of a condition, what it computes from numbers of tokens.
     """
 
     game: Game
     unfolding: Unfolding
     predicates: Sequence[Predicate]
     used: set[int] = field(default_factory=set)
+    computed: dict[int, list[Sum]] = field(default_factory=dict)
     _known: dict[int, Formula] = field(default_factory=dict)
 
     # --- formulas ----------------------------------------------------------------------------------
@@ -125,9 +153,22 @@ class Conditions:
                 )
             case "pred":
                 if f.number not in self._known:
-                    self._known[f.number] = self._predicate(self.predicates[f.number])
+                    sums = self.computed.setdefault(f.number, [])
+                    self._known[f.number] = self._predicate(self.predicates[f.number], sums)
                 return self._known[f.number]
         raise NotTranslatedError("it is about the step that is taken")
+
+    def counted(self, asked: m.Asked) -> Counted:
+        """What the conditions of a property compute from numbers of tokens; they have been translated."""
+        numbers = {a.number for f in m.formulas(asked) for a in m.atoms(f) if a.kind == "pred"}
+        found = []
+        for total in (x for n in sorted(numbers) for x in self.computed.get(n, ())):
+            weights: dict[int, int] = {}
+            for p, n in total.weights.items():
+                place = self.unfolding.places[p].place
+                weights[place] = max(weights.get(place, 0), abs(n))
+            found.append((weights, total.constant))
+        return Counted(tuple(found))
 
     def sum_of(self, place: int) -> Sum:
         """The tokens of a place of the net."""
@@ -171,17 +212,24 @@ class Conditions:
 
     # --- CPN ML ------------------------------------------------------------------------------------
 
-    def _predicate(self, p: Predicate) -> Formula:
+    def _predicate(self, p: Predicate, sums: list[Sum]) -> Formula:
         marks = {symbol.uid: place for symbol, place in p.places}
-        return _Reader(self, marks).truth(p.exp)
+        return _Reader(self, marks, sums).truth(p.exp)
 
 
 @record
 class _Reader:
-    """Reads one condition in CPN ML; `marks`: the symbols that stand for what places hold."""
+    """Reads one condition in CPN ML.
+
+    Args:
+        to: gets what it says.
+        marks: the symbols that stand for what places hold.
+        sums: gets what it computes from numbers of tokens.
+    """
 
     to: Conditions
     marks: Mapping[int, int]
+    sums: list[Sum]
 
     def truth(self, e: core.Exp) -> Formula:
         """A condition."""
@@ -251,6 +299,8 @@ class _Reader:
         found = self._sum(e)
         if abs(found.constant) > _LARGEST_CONSTANT:  # with some tokens more it may raise Overflow
             raise NotTranslatedError("it compares with too large numbers")
+        if found.weights:
+            self.sums.append(found)
         return found
 
     def _sum(self, e: core.Exp) -> Sum:

@@ -25,6 +25,7 @@ from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.frozen import record
 from pn2code.contest.building import wait_until_built
 from pn2code.contest.engine import engine
+from pn2code.contest.evidence import evidence, rests_on
 from pn2code.contest.examinations import Asked as Question
 from pn2code.contest.lines import Result
 from pn2code.contest.portfolio import answers
@@ -40,7 +41,7 @@ from pn2code.unfold.unfold import unfold
 from pn2code.verdict.asked import Asked
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.unfolded.askable import why_not
-from pn2code.verdict.unfolded.conditions import transition_name
+from pn2code.verdict.unfolded.conditions import Counted, transition_name
 from pn2code.verdict.unfolded.hunt import hunt, write
 from pn2code.verdict.unfolded.questions import DEAD, Questions
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -61,6 +62,7 @@ _RUNS = 0.3
 _LEAST_MIB = 256
 _LOOK_S = 0.1
 _RUN_S = 10.0
+_CERTIFICATES_S = 5.0
 _DEAD_RUN = ""
 """The name of the run to a dead marking; properties have names."""
 
@@ -133,7 +135,10 @@ def look(
         with suppress(TimeIsOverError), _until(options.interrupted).enforced():
             asker.ask_all()
             asker.find_runs(opened)
+            asker.find_certificates()
     made = replace(asker.made, seconds=time.monotonic() - began)
+    proven = (options.sizes.bounds if options.sizes is not None else None) or {}
+    made = without_overflows(opened.flat, made, questions.counted, proven)
     if wrong := contradiction(found, made):
         raise RuntimeError(f"the unfolded net is another one: {wrong}")
     return _with(found, made, limits)
@@ -158,10 +163,13 @@ def unfolded(net: FlatNet) -> Unfolding | str:
     d = Diagnostics()
     unfolding = unfold(net, d, with_code=True)
     if unfolding is None:
-        return d.errors[0].message
+        error = d.errors[0]
+        return f"{error.message}; {error.hint}" if error.hint else error.message
     # Also one that a search for bindings raises: whose tokens are not known, so that it is no `Fault`.
     fault = next((x for x in d if x.code == UNFOLDING_FAULT), None)
-    return unfolding if fault is None else f"an exception may be raised: {fault.message}"
+    if fault is None:
+        return unfolding
+    return f"an exception may be raised: {fault.message}; guard what raises it, or handle the exception"
 
 
 @record
@@ -256,6 +264,31 @@ class _Asker:
                 told[name] = replace(told[name], run=run)
         self.made = replace(self.made, told=told)
 
+    def find_certificates(self) -> None:
+        """Evidence for what is not reachable, of the unfolded net as it is."""
+        self.options.stage("looking for certificates in the unfolded net ...")
+        until = time.monotonic() + min(_CERTIFICATES_S, self._left())
+        q, told = self.questions, dict(self.made.told or {})
+        turned = {one.name: one.is_turned for one in q.properties}
+        for name, text in q.shown.items():
+            if name not in told or told[name].holds != turned[name]:
+                continue
+            found = evidence(text, q.tables, self._name, until)
+            is_late = found is None and time.monotonic() > until
+            rests = "" if found is not None else rests_on(told[name].methods, is_late=is_late)
+            told[name] = replace(told[name], certificate=found, rests=rests)
+        self.made = replace(self.made, told=told)
+        if self.made.has_dead is False:
+            found = evidence("reach dead", q.tables, self._name, until)
+            self.made = replace(self.made, dead_certificate=found)
+
+    def _name(self, number: int) -> str:
+        """Of an unfolded place, or of the number of steps of a transition, which comes after these."""
+        places = self.unfolding.places
+        if number < len(places):
+            return places[number].name
+        return f"steps of {self.unfolding.transitions[number - len(places)].name}"
+
     def _path(self, name: str, number: int) -> Path:
         """Where a run goes: those of properties get their names later."""
         o = self.options
@@ -264,6 +297,31 @@ class _Asker:
             return o.traces / f"{o.stem}.dead.trace.jsonl"
         assert o.evidence is not None
         return o.evidence / f".pn2code-{os.getpid()}-u{number}.trace.jsonl"
+
+
+def without_overflows(
+    net: FlatNet, made: Unfolded, counted: Mapping[str, Counted], proven: Mapping[int, int]
+) -> Unfolded:
+    """The same, without answers that no run shows about numbers of tokens that may be too large for `int`.
+
+    Args:
+        net: the net.
+        made: what is known.
+        counted: by name of a property, what its conditions compute from numbers of tokens.
+        proven: by place, most tokens, where the structure of the net proves it.
+    """
+    most = 2 ** (net.program.int_bits - 1) - 1
+    bounds = {**proven, **(made.bounds or {})}
+    told, refused = dict(made.told or {}), dict(made.refused or {})
+    for name, own in counted.items():
+        place = own.may_exceed(most, bounds)
+        if place is not None and name in told and told[name].run is None:
+            del told[name]
+            refused[name] = (
+                f"its condition counts the tokens of place `{net.places[place].name}`, and whether they are too many "
+                "for `int` (`Overflow`) is not known; `bound` asks how many tokens a place holds without that"
+            )
+    return replace(made, told=told, refused=refused)
 
 
 def contradiction(found: Exploration, made: Unfolded) -> str:

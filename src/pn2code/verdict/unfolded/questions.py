@@ -18,6 +18,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.unfold.net import Unfolding
 from pn2code.verdict.unfolded.conditions import (
     Conditions,
+    Counted,
     NotTranslatedError,
     joined,
     name,
@@ -38,12 +39,14 @@ class Questions:
         shown: of those that a marking decides, what is looked for, as a question: where it is found a run shows the
             answer.
         refused: why others cannot be.
+        counted: what their conditions compute from numbers of tokens, by name.
     """
 
     tables: Tables
     properties: tuple[Asked, ...]
     shown: Mapping[str, str]
     refused: Mapping[str, str]
+    counted: Mapping[str, Counted]
 
     @staticmethod
     def of(game: Game, unfolding: Unfolding, properties: m.Properties) -> Questions:
@@ -55,9 +58,11 @@ class Questions:
         conditions = Conditions(game, unfolding, properties.predicates)
         translated: list[tuple[m.Property, str, Formula]] = []
         refused: dict[str, str] = {}
+        counted: dict[str, Counted] = {}
         for p in properties.properties:
             try:
                 translated.append((p, *_translated(conditions, p.asked)))
+                counted[p.name] = conditions.counted(p.asked)
             except NotTranslatedError as problem:
                 refused[p.name] = str(problem)
         tables = _named(unfolding, conditions.used)
@@ -75,7 +80,7 @@ class Questions:
                 shown[p.name] = text
             except FormulaError as problem:
                 refused[p.name] = str(problem)
-        return Questions(tables, tuple(questions), shown, refused)
+        return Questions(tables, tuple(questions), shown, refused, counted)
 
     def dead(self) -> Asked:
         """Whether there is a dead marking."""

@@ -89,8 +89,10 @@ def complete(found: Exploration) -> Iterator[tuple[str, str]]:
         else f"not complete: {found.nodes:,}{of} were seen",
     )
     missing = "not asked for" if found.complete else "not complete"
-    yield "Arcs", f"complete: {found.arcs:,}{of}" if seen.arcs else missing
+    is_counted = seen.arcs or (found.sweep is not None and seen.markings)
+    yield "Arcs", f"complete: {found.arcs:,}{of}" if is_counted else missing
     missing = "not preserved by the reduction" if seen.arcs and found.is_reduced else missing
+    missing = "not known, since markings were forgotten" if found.sweep is not None else missing
     yield "Components", "complete" if seen.components else missing
 
 

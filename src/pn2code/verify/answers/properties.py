@@ -81,6 +81,10 @@ class Answer:
     """what a "yes" about a cell rests on that no state of it shows"""
     methods: tuple[str, ...] = ()
     """of the unfolded net, which have given it, in the words of the contest; (): it was explored"""
+    certificate: Mapping[str, Any] | None = None
+    """of the unfolded net, why nothing that decides is reachable (`answers.certificates`); None: there is none"""
+    rests: str = ""
+    """what it rests on without one, as a clause; "": that is not to be said"""
 
     @property
     def is_expected(self) -> bool:
@@ -118,6 +122,7 @@ class Answer:
             "rests_on": self.rests_on,
             "assumes": list(self.assumes),
             "methods": list(self.methods),
+            "certificate": self.certificate,
         }
 
     def _net_row(self) -> dict[str, Any]:
@@ -207,6 +212,8 @@ def from_unfolded(answer: Answer, found: Exploration) -> Answer:
         evidence=evidence,
         no_run=looked if has_run and not isinstance(answer.about.asked, m.Branching) else "",
         methods=one.methods,
+        certificate=one.certificate,
+        rests=one.rests,
     )
 
 

@@ -35,6 +35,7 @@ from pn2code.verify.controller.control_answers import (
     silent,
 )
 from pn2code.verify.controller.control_messages import formats, memory
+from pn2code.verify.controller.control_swarm import swarmed
 from pn2code.verify.controller.control_types import BLOCKING, CellProgram, Check, Control, Plan
 from pn2code.verify.controller.crowd import Crowd, crowd
 from pn2code.verify.controller.not_looked import not_looked
@@ -81,6 +82,8 @@ def examine(
         why = f"the cell as it runs cannot be modelled: {problem}"
         nothing = not_looked(why, partition, plan.capacities, closed, poses, plan.bounds)
         return replace(nothing, why=why)
+    if limits.swarm is not None:
+        return swarmed(partition, running, plan, limits, d, closed)
     with set_up(partition, plan, limits, d, closed, running, poses) as setting:
         seen = spaces.look(setting)
         if seen is None:

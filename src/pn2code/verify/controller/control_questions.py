@@ -15,7 +15,12 @@ from pn2code.verify.controller.stated import Stated
 
 
 def of_cell(
-    running: Running, plan: Plan, *, in_turns: bool = False, conditions: Sequence[Stated] = ()
+    running: Running,
+    plan: Plan,
+    *,
+    in_turns: bool = False,
+    conditions: Sequence[Stated] = (),
+    by_markings: bool = False,
 ) -> str:
     """The lines for the explorer about the cell: first properties, then what `cell_answers` understands.
 
@@ -24,6 +29,8 @@ def of_cell(
         plan: what is asked.
         in_turns: in a space that is seen in turns (`by_turns`).
         conditions: what is asked there of states instead of the properties.
+        by_markings: there will be no graph: of the end it is asked whether a dead marking is one, and then, in the last
+            line, whether it can still be reached.
     """
     asked = Questions()
     resting = None if in_turns else running.resting
@@ -31,20 +38,32 @@ def of_cell(
         x.ask(asked)
     for p in () if in_turns else plan.properties.properties:
         asked.ask(with_programs(p.asked, running))
-    end = "-"
+    over = None
     if running.partition.final_places:
-        end = str(asked.line(f"ef {asked.line(f'within {running.over} 1 -')}"))
+        over = asked.line(f"within {running.over} 1 -")
     asked.asked += [
-        f"? ends {end}",
+        _no_dead_end(asked, over) if by_markings else _ends(asked, over),
         f"? bound {running.stopped} 0 0",
         *(f"? restless {i} {steps.most}" for i, steps in enumerate(running.moments.sets())),
         *(f"? invariant {kept_silence(asked, s, resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
+        *([_ends(asked, over)] if by_markings else ()),
     ]
     lines = running.lines(first=True, at_once=in_turns)
     return "".join(f"{line}\n" for line in lines) + asked.text()
+
+
+def _ends(asked: Questions, over: int | None) -> str:
+    """Whether the end can be reached from everywhere; without one, whether the cell goes on."""
+    return f"? ends {'-' if over is None else asked.line(f'ef {over}')}"
+
+
+def _no_dead_end(asked: Questions, over: int | None) -> str:
+    """Whether something can happen in each marking that is no end."""
+    goes_on = asked.line(f"not {asked.line('dead')}")
+    return f"? invariant {goes_on if over is None else asked.line(f'or {goes_on} {over}')}"
 
 
 def with_programs(asked: m.Asked, running: Running) -> m.Asked:

@@ -196,6 +196,7 @@ class Plan:
         primitives, arms: the functions that are commands, and what the robots can reach; None: nothing is known of it.
         graph: where the graph of the cell is written, if all of it is seen, and it has at most `MOST_WRITTEN` states;
             None: nowhere.
+        checks: whether the checks are asked for, and not only properties.
     """
 
     storage: Mapping[str, str] = field(default_factory=dict)
@@ -213,6 +214,7 @@ class Plan:
     primitives: Mapping[str, Primitive] = field(default_factory=dict)
     arms: Arms | None = None
     graph: Path | None = None
+    checks: bool = True
 
     def poses(self, partition: Partition) -> Poses | None:
         """What the arms of a cell are told; None: nothing is known of arms."""
@@ -368,5 +370,6 @@ class Control:
             "arcs": found.arcs if found else 0,
             "bounds": bounds,
             "dead_transitions": dead,
+            "swarm": dict(found.swarm) if found is not None and found.swarm else None,
             "crowd": None if self.crowd is None else self.crowd.row(),
         }

@@ -27,7 +27,7 @@ from pn2code.verify.codes import (
     SPILL_FULL,
     TIME_OVER,
 )
-from pn2code.verify.exploring import covering, nondeterminism, programs
+from pn2code.verify.exploring import covering, nondeterminism, programs, sweep
 from pn2code.verify.exploring.counts import Counts
 from pn2code.verify.exploring.explorer_process import nothing, run_with_tables
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction, default_memory
@@ -102,6 +102,7 @@ class ExploreOptions:
         counts: with `turns`, the places whose tokens are counted up to a limit only; None: there are none.
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
+        needs_graph: where markings had to be forgotten, since there was no memory for all, not all was done.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         ending: of a swarm: the numbers of the questions of which a decided one ends it.
         shuffle: depth first, the order of successors: 0 as they are found, 1 the other way round, others by chance.
@@ -129,6 +130,7 @@ class ExploreOptions:
     counts: Counts | None = None
     bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
+    needs_graph: bool = False
     covering: bool = False
     ending: tuple[int, ...] = ()
     shuffle: int = 0
@@ -171,6 +173,10 @@ def explore(
         net, storage, open_places, is_limited=is_limited, time_alone=time_alone
     ) as search:
         found = _explored(net, storage, limits, d, options, search if options.covering else None)
+        may_sweep = limits.sweeps is None and options.turns is None and options.counts is None
+        may_sweep = may_sweep and set(limits.reductions) <= {Reduction.TIME}
+        if found is not None and may_sweep and sweep.may_help(found):
+            found = _swept_after(net, storage, limits, d, options, found)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not options.covering or not is_open:
             return found
@@ -181,6 +187,26 @@ def explore(
         trace = options.traces / f"{options.stem}.unbounded.trace.jsonl"
         run = covering.kept(run, net, storage, trace)
     return replace(found, why=INFINITE, covering=run)
+
+
+def _swept_after(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    options: ExploreOptions,
+    first: Exploration,
+) -> Exploration:
+    """What was found within the limit of memory, with what an exploration that forgets markings finds besides."""
+    unheard = Diagnostics()
+    with suppress(TimeIsOverError), limits.deadline.enforced():
+        if sweep.measure(net, storage, limits.reductions, unheard) is None:
+            return first
+        options.stage("exploring once more, forgetting markings that cannot come back ...")
+        again = _explored(net, storage, replace(limits, sweeps=True), unheard, options, None)
+        if again is not None:
+            return sweep.joined(first, again, needs_graph=options.needs_graph)
+    return first
 
 
 def _may_go_on(net: FlatNet, limits: Limits, predicates: Sequence[Predicate]) -> bool:
@@ -230,6 +256,8 @@ def _explored(
             chosen = possible(
                 net, limits.reductions, d, options.predicates, storage, options.questions
             )
+            if limits.sweeps:
+                chosen = sweep.chosen(net, storage, chosen, d)
             made = options.generated or Generated()
             sizes = made.sizes or options.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
@@ -266,7 +294,7 @@ def _explored(
                 if not options.interrupted() and first is not None:
                     # The compiler was not done in time: what the program before has seen is what is known.
                     seen = {**first, "why": "seconds"}
-                    return chosen.told(Exploration.of(net, seen, compiling))
+                    return chosen.told(Exploration.of(net, seen, compiling), net)
                 if not options.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
@@ -314,14 +342,22 @@ def _explored(
                 refuse(reduction, error["message"], Origin(net.file), d)
             chosen = chosen.without_elements()
             continue
+        if error and error["kind"] == "sweep":
+            d.error(
+                EXPLORER_FAILED,
+                f"the explorer refuses to forget markings: {error['message']}",
+                Origin(net.file),
+                hint="explore with `--no-sweep`",
+            )
+            return None
         if error and error["kind"] == "mismatch":
             _differs(net, error, d)
             return None
         if error and error["kind"] == "heap":
             heaped = {**found, "error": None, "why": HEAPED}
-            return chosen.told(Exploration.of(net, heaped, compiling))
+            return chosen.told(Exploration.of(net, heaped, compiling), net)
         if not error or error["kind"] not in ("capacity", "memory"):
-            return chosen.told(Exploration.of(net, found, compiling))
+            return chosen.told(Exploration.of(net, found, compiling), net)
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         if (
             place is not None
@@ -329,7 +365,7 @@ def _explored(
             and sizes.held(place.name) >= MOST_HEAPED
         ):
             heaped = {**found, "error": None, "why": HEAPED}
-            return chosen.told(Exploration.of(net, heaped, compiling))
+            return chosen.told(Exploration.of(net, heaped, compiling), net)
         larger = sizes.larger(place.name if place else None)
         if larger is None:
             what = f"place `{place.name}`" if place else "one marking's lists and strings"
@@ -339,7 +375,7 @@ def _explored(
                 place.origins[0] if place else Origin(net.file),
                 hint="run the net with `pn2code simulate`, limit the place in the net, or limit the exploration",
             )
-            return chosen.told(Exploration.of(net, {**found, "why": "memory"}, compiling))
+            return chosen.told(Exploration.of(net, {**found, "why": "memory"}, compiling), net)
         sizes = larger
         first = {**found, "error": None}
 

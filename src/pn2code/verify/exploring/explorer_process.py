@@ -36,6 +36,7 @@ _TABLES = {
     "--queries": "questions",
     "--turns": "turns",
     "--counts": "limits",
+    "--sweep": "weights",
 }
 _LOOK_S = 0.05
 """So often it is looked whether an explorer is to be ended."""
@@ -86,6 +87,7 @@ def run_with_tables(
         "--queries": options.questions,
         "--turns": options.turns.text() if options.turns else "",
         "--counts": options.counts.text() if options.counts else "",
+        "--sweep": chosen.progress.text() if chosen.progress else "",
     }
     made: list[Path] = []
     arguments = list(arguments)

@@ -68,6 +68,8 @@ class Limits:
         turns_from: states of a cell from which on its programs are looked at in turns, if that keeps what is asked;
             None: never.
         most_in_turns: states that are looked at then; None: as many as `max_states` says.
+        sweeps: whether markings that cannot come back are forgotten (`progress`): always, never, or (None) in a second
+            exploration, where the limit of memory has ended the first one.
         unfolds: whether the unfolded net is asked where a limit of states, time or memory ends an exploration.
         unfolds_alone: whether it is asked instead of one: `max_states` is `ALONE` then.
         counts_from: states from which on tokens are counted up to a limit only, if that is enough; None: never, nor
@@ -89,6 +91,7 @@ class Limits:
     turns_from: int | None = TURNS_FROM
     most_in_turns: int | None = None
     counts_from: int | None = COUNTS_FROM
+    sweeps: bool | None = False
     unfolds: bool = False
     unfolds_alone: bool = False
 

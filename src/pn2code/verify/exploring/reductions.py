@@ -17,6 +17,7 @@ from pn2code.verify.exploring.find_instances import instances, why_none
 from pn2code.verify.exploring.instances import Instances
 from pn2code.verify.exploring.invariant_questions import AskedOf
 from pn2code.verify.exploring.limits import Reduction
+from pn2code.verify.exploring.progress import Progress
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.time_reduction import NotReducible
 
@@ -44,22 +45,25 @@ class Chosen:
         elements: the table of binding elements, None: none of them needs it.
         dependency: what partial order rests on instead where there is no such table.
         instances: the parts that symmetry exchanges; None: it is of colours, and rests on the table.
+        progress: the measure in the order of which markings are looked at, and forgotten; None: in another one.
     """
 
     reductions: tuple[Reduction, ...]
     elements: Elements | None
     dependency: Dependency | None = None
     instances: Instances | None = None
+    progress: Progress | None = None
 
     def without_elements(self) -> Chosen:
         """Those that need no table."""
         return Chosen(tuple(r for r in self.reductions if r not in OF_ELEMENTS), None)
 
-    def told(self, found: Exploration) -> Exploration:
+    def told(self, found: Exploration, net: FlatNet) -> Exploration:
         """What was found, in terms of the whole net."""
         if self.instances is not None and found.told:
             found = self.instances.expanded(found)
-        return replace(found, symmetries=self.symmetry_names())
+        measure = self.progress.names(net) if self.progress is not None else ""
+        return replace(found, symmetries=self.symmetry_names(), measure=measure)
 
     def symmetry_names(self) -> tuple[str, ...]:
         """What is permuted, for people."""

@@ -210,6 +210,10 @@ class Exploration:
         orders: what CPN Tools may raise in another order; None: nothing, or it was not looked at.
         unfolded: what the unfolded net tells where a limit has ended the exploration; None: it was not looked at.
         swarm: how many searches of a swarm have seen what (`swarm.merging`); None: it was one exploration.
+        sweep: of an exploration that has forgotten markings (`verify.exploring.progress`): `layers`, how many values
+            the measure had; `most_known`, how many markings were known at a time; `forgettings`; `runs_lost`; None: it
+            was another one.
+        measure: for people, of `sweep`.
         told: whether the explorer has told what it has seen; else how many markings that were is all that is known.
     """
 
@@ -244,6 +248,8 @@ class Exploration:
     told: bool = True
     unfolded: Unfolded | None = None
     swarm: Mapping[str, Any] | None = None
+    sweep: Mapping[str, Any] | None = None
+    measure: str = ""
 
     @property
     def is_reduced(self) -> bool:
@@ -308,6 +314,7 @@ class Exploration:
             different=tuple(found.get("different") or ()),
             told=found.get("told", True),
             swarm=found.get("swarm"),
+            sweep=found.get("sweep"),
         )
 
     @property

@@ -58,6 +58,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
         "swarm": dict(found.swarm) if found.swarm else None,
+        "sweep": {**found.sweep, "measure": found.measure} if found.sweep else None,
         "error": dict(found.error) if found.error else None,
         "other_orders": _orders_row(net, found.orders),
         "counted": _known_row(net, found.known),

@@ -33,11 +33,15 @@ class Told:
         holds: whether it is true.
         methods: which have given it, in the words of the contest ("DECISION_DIAGRAMS"), sorted.
         run: a run that shows it, as a trace, and its steps; None: there is none, or it was not found.
+        certificate: why nothing that is looked for is reachable (`answers.certificates`); None: there is none.
+        rests: what it rests on without one, as a clause; "": that is not to be said.
     """
 
     holds: bool
     methods: tuple[str, ...]
     run: tuple[Path, int] | None = None
+    certificate: Mapping[str, Any] | None = None
+    rests: str = ""
 
 
 @frozen
@@ -65,6 +69,7 @@ class Unfolded:
         seconds: that all of it took.
         whole: the sizes of the state space; None: not known.
         has_dead: whether there is a dead marking; None: not known. `dead_run`: a run to one, and its steps.
+            `dead_certificate`: why there is none.
         never: transitions that never occur, by index; `open_`: those of which it is not known.
         bounds: most tokens of places, by index, where it is known.
         told: the answers to properties, by name. `refused`: why others were not asked, as clauses.
@@ -79,6 +84,7 @@ class Unfolded:
     has_dead: bool | None = None
     dead_methods: tuple[str, ...] = ()
     dead_run: tuple[Path, int] | None = None
+    dead_certificate: Mapping[str, Any] | None = None
     never: tuple[int, ...] = ()
     open_: tuple[int, ...] = ()
     bounds: Mapping[int, int] | None = None
@@ -116,6 +122,7 @@ def row(found: Unfolded, transition: Mapping[int, str], place: Mapping[int, str]
         "methods": [] if whole is None else list(whole.methods),
         "has_dead_markings": found.has_dead,
         "dead_methods": list(found.dead_methods),
+        "dead_certificate": found.dead_certificate,
         "dead_trace": None if found.dead_run is None else str(found.dead_run[0]),
         "dead_transitions": [transition[i] for i in found.never],
         "unknown_transitions": [transition[i] for i in found.open_],

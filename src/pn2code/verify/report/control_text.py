@@ -19,7 +19,7 @@ from pn2code.verify.controller.control_types import (
     Control,
     Evidence,
 )
-from pn2code.verify.report import properties_text
+from pn2code.verify.report import properties_text, swarm_text
 
 TITLE = "Controller Checks"
 _RULE = "-" * 72
@@ -43,6 +43,8 @@ def looked_at(control: Control) -> Iterator[str]:
     found = control.found
     if control.why:
         yield f"Looked up: {control.why}."
+    elif found is not None and found.swarm is not None:
+        yield f"Searched in the cell as it runs: {swarm_text.seen(found.swarm)}."
     elif found is not None:
         how = ", of the reduced space (docs/reductions.md)" if control.reduced else ""
         yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs{how}."

@@ -129,6 +129,11 @@ class Pictures:
             most = f"at most {self._most:,} nodes and {self._most * _MOST_ARCS:,} arcs can be seen"
             page = found.nodes <= MOST_HTML and self._most < MOST_HTML
             return f"{size}, {most}", "an .html file takes more" if page else smaller
+        if found.sweep is not None:
+            return (
+                "markings were forgotten on the way (`--sweep`)",
+                "`--no-sweep`, and more `--memory`",
+            )
         if found.graph is None and (self._lines is None or not self._lines.exists()):
             return "the graph is not known with `--no-graph`", "leave it out"
         return "", ""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
-from pn2code.verify.answers import basis
+from pn2code.verify.answers import basis, certificates
 from pn2code.verify.answers.path import Step, steps, summary
 from pn2code.verify.answers.properties import Answer, Evidence
 from pn2code.verify.exploring.unfolded import in_words
@@ -59,6 +59,11 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"rests on this: {'; '.join((seen, *a.assumes))}")
     if a.methods:
         found.append(f"found by {in_words(a.methods)}")
+    if a.certificate is not None:
+        found.append("certificate, checked in integers:")
+        found += (f"  {line}" for line in certificates.lines(a.certificate))
+    elif a.rests:
+        found.append(f"no certificate: {a.rests}")
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found

@@ -22,7 +22,13 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.result import Exploration, Graph
 from pn2code.verify.exploring.result_rows import cut
-from pn2code.verify.report import control_text, properties_text, swarm_text, unfolded_text
+from pn2code.verify.report import (
+    control_text,
+    properties_text,
+    swarm_text,
+    sweep_text,
+    unfolded_text,
+)
 
 _RULE = "-" * 72
 _WIDTH = 110
@@ -100,6 +106,8 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None, counts: Co
             f"probability\nthat any was omitted is about {found.approximation['omission_probability']:.2g}.\n"
             "No answer that rests on what was not seen is given."
         )
+    if found.sweep is not None:
+        lines += textwrap.wrap(f"SWEPT: {sweep_text.known(found)}.", _WIDTH)
     if found.reductions:
         lines.append(f"REDUCED by {', '.join(found.reductions)}.")
     if found.is_reduced:

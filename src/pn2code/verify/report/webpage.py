@@ -31,7 +31,14 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.exploring.result_rows import cut
-from pn2code.verify.report import control_text, html, properties_text, swarm_text, unfolded_text
+from pn2code.verify.report import (
+    control_text,
+    html,
+    properties_text,
+    swarm_text,
+    sweep_text,
+    unfolded_text,
+)
 from pn2code.verify.report.text import bounded_places, left_out
 
 MOST_STEPS = 200
@@ -207,6 +214,8 @@ def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
         text = f"Approximate ({kind}): the probability that a marking was omitted is about {omitted:.2g}."
         said.append({"kind": "open", "text": text})
+    if found.sweep is not None:
+        said.append({"kind": "good", "text": f"Swept: {sweep_text.known(found)}."})
     if found.reductions:
         said.append({"kind": "open", "text": f"Reduced by {', '.join(found.reductions)}."})
     if found.is_reduced:
