@@ -75,6 +75,8 @@ LONG = {
     "pn2code conform examples/riveting": "10 seconds; test_riveting_net compares it",
     "pn2code conform examples/sorting": "all states of a larger cell: a minute",
     "pn2code conform examples/shared-zone --most 1500": "the same",
+    'pn2code verify net.cpn --memory 128 --property "bound Supervisor\'Finished <= 1" '
+    '--property "reachable { size (Mark.Supervisor\'Scrap 1) = 10 }"': "test_sweep has smaller nets",
     "pn2code verify examples/handover": CELLS,
     "pn2code report examples/minimal -o report": "test_report does the same",
     "pn2code verify examples/tending": CELLS,

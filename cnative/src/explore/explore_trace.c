@@ -82,7 +82,7 @@ static uint32_t *path_to(const ex_graph_t *graph, uint32_t node, uint64_t *lengt
     return on_path;
 }
 
-/* --- with symmetries of colours: the states of the way stand for others, and a run goes through one of them after the other -- */
+/* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other -- */
 
 typedef struct walk {
     ex_worker_t *worker;

@@ -32,7 +32,7 @@ from pn2code.contest.words import ALL, UNKNOWN, names, unknown
 
 MOST_S = 60.0
 """What the command has where it is not told."""
-OPTIONS = ("--max-seconds", "--memory", "--only")
+OPTIONS = ("--evidence", "--max-seconds", "--memory", "--only")
 """Those of the command that have a value."""
 _GRACE_S = 1.25
 _GRACE = 0.06

@@ -65,7 +65,9 @@ def look(
         capacities = declared(partition, config, d)
         return not_looked(found.why, partition, capacities, found, poses, bounds)
     cut = ""
-    if is_partial and found.why != "error" and not opened.flat.timed and limits.swarm is None:
+    # Where all markings were seen, and only the graph between them had no room, those of the cell may be seen as well.
+    is_cut = is_partial and found.why != "error" and not found.seen.markings
+    if is_cut and not opened.flat.timed and limits.swarm is None:
         # All of it will not be seen either, but what is wrong in a part is wrong.
         most = max(found.nodes, LEAST_STATES)
         if limits.max_states is None or most < limits.max_states:

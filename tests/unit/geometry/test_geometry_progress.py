@@ -16,6 +16,7 @@ from pn2code.verify.exploring.limits import Limits
 MINIMAL = Path(__file__).parents[3] / "examples" / "minimal"
 
 
+@pytest.mark.bullet
 def test_an_exploration_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def explore(*args: Any) -> None:
         tell = args[-1].progress

@@ -16,7 +16,8 @@ const void *ex_instances_canonical(ex_worker_t *worker, const void *marking);
 bool ex_instances_are_even(ex_worker_t *worker, const void *marking);
 
 /* A run goes through states that are exchanged, while the states of the way are representatives. Before it: nothing is
- * exchanged yet. After each step: what has been exchanged for the last marking that ex_instances_canonical was given. */
+ * exchanged yet. After each step: what has been exchanged for the last marking that ex_instances_canonical was given.
+ */
 void ex_instances_start(ex_worker_t *worker);
 void ex_instances_follow(ex_worker_t *worker);
 /* The transition of the run that occurs when one does on the way. */

@@ -3,9 +3,9 @@
  * which state stands for those that are the same but for the names of colours (explore_symmetry.c), or but for which of
  * several equal parts of the net is which (explore_instances.c).
  *
- * All but the last rest on a table of the binding elements (explore_elements.c) that comes with the net: counters are the colours
- * of packed places that can be marked, elements say how many of each they take and put. Successors are made by the
- * compiled net as always; the table decides about them, and where the two differ the run ends with an error.
+ * All but the last rest on a table of the binding elements (explore_elements.c) that comes with the net: counters are
+ * the colours of packed places that can be marked, elements say how many of each they take and put. Successors are made
+ * by the compiled net as always; the table decides about them, and where the two differ the run ends with an error.
  */
 #ifndef EXPLORE_REDUCE_H
 #define EXPLORE_REDUCE_H

@@ -3,9 +3,11 @@
  *
  * A walk that is as long as it may be has perhaps not come to an end because there is none any more. So now and then,
  * where it stands, all that can follow is looked at, as long as it is little: if none of it is an end, the cell is
- * trapped. The states of a trap lead into the trap alone, so the first one on the way that is in it is found by halving.
+ * trapped. The states of a trap lead into the trap alone, so the first one on the way that is in it is found by
+ * halving.
  */
 #include "explore_swarm.h"
+#include "../search/explore_search.h"
 
 #include <string.h>
 
