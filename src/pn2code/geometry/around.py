@@ -12,7 +12,8 @@ from collections.abc import Iterable
 from pn2code.geometry.answers import Around
 from pn2code.geometry.contents import Contents, spot
 from pn2code.geometry.legs import Leg
-from pn2code.geometry.situations import Met, Situations
+from pn2code.geometry.situation import Met
+from pn2code.geometry.situations import Situations
 
 
 def around_of(found: Situations, met: Met, legs: Iterable[tuple[Leg, Contents]]) -> Around:

@@ -20,6 +20,7 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.around import around_of
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.contents import Load, spots
+from pn2code.geometry.doubts import APART
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.part_names import as_in_runs, as_seen, gap_as_seen, like, shown
@@ -27,7 +28,8 @@ from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.progress import LATE, Meeting, Progress, Seen
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.situations import APART, ON_PLATE, Met, Side, Situations
+from pn2code.geometry.situation import ON_PLATE, Met, Side
+from pn2code.geometry.situations import Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import carrying, numbers, reason, words
 from pn2code.geometry.zones import Explore, Refused, Zones, sides_of
@@ -198,7 +200,7 @@ class Look:
 
     def _open_at(self, found: Situations) -> Iterator[Open]:
         """Where it is that not all is known, but for what is wrong there."""
-        for doubt in found.doubts.values():
+        for doubt in found.doubts:
             if not doubt.is_sure:
                 who = [_who(found, e) for e in doubt.met.elements]
                 yield Open(
@@ -212,7 +214,7 @@ class Look:
 
     def _turning(self, found: Situations) -> Iterator[Pair]:
         """Parts that are handled on plates which move."""
-        for doubt in found.doubts.values():
+        for doubt in found.doubts:
             if doubt.is_sure:
                 (t, owner), (u, other) = (_who(found, e) for e in doubt.met.elements)
                 does = tuple(

@@ -13,7 +13,8 @@ from dataclasses import field
 from pn2code.base.frozen import frozen, record
 from pn2code.geometry.answers import Around, Move, Pair
 from pn2code.geometry.apart import Apart
-from pn2code.geometry.situations import Met, Side, Situations
+from pn2code.geometry.situation import Met, Side
+from pn2code.geometry.situations import Situations
 
 
 @frozen(eq=False)

@@ -15,91 +15,26 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
-from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.activities import Activity, Doing
-from pn2code.geometry.contents import Contents, spot
+from pn2code.geometry.at_once import AtOnce
+from pn2code.geometry.contents import Contents
+from pn2code.geometry.doubts import Doubt, Doubts
 from pn2code.geometry.graph import MOST_STATES, CellGraph
 from pn2code.geometry.legs import Leg, Stand
 from pn2code.geometry.part_names import like
-from pn2code.geometry.prisms import PartEvent
 from pn2code.geometry.seeing import Scene, Seeing
+from pn2code.geometry.situation import ON_PLATE, Met, Side, Situation
 from pn2code.robot.part import Part
 
-Side = tuple[int, int, int]
-"""What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands).
-
-Of parts of a kind that stand on a plate of it, whatever the arm does, it is (arm, -2, which kind and plate).
-"""
-ON_PLATE = -2
 _NO_ARM = 1000
-Said = frozenset[tuple[int, str, bool]]
-"""Whom, by the number of the owner, which sensor has told what."""
 MOST = 1_000_000
 """Situations that are looked at ..."""
 MORE = 4
 """... or, where more states than usual were asked for, so many times these."""
-
-
-@frozen(eq=False)
-class Situation:
-    """A state of the cell with its arms and parts.
-
-    Args:
-        said: what sensors that see the scene may have said to whoever has asked before its commands: it is under way
-            since then.
-    """
-
-    state: int
-    stands: tuple[Stand, ...]
-    contents: Contents
-    said: Said = frozenset()
-
-    @property
-    def key(self) -> tuple[object, ...]:
-        """What tells it from others."""
-        return (self.state, self.contents.number, *(s.number for s in self.stands), self.said)
-
-
-@frozen
-class Met:
-    """Where something is met first.
-
-    Args:
-        situation: its number.
-        elements: what is under way there (-1: an arm that stands).
-    """
-
-    situation: int
-    elements: tuple[int, ...]
-
-
-@frozen(eq=False)
-class Doubt:
-    """Why not all situations are known, and where that is so first; or something that surely cannot be done.
-
-    Args:
-        why: as in `words.reason`; says: what of it is known, as a clause.
-        do: what the user can do.
-        is_sure: two programs cannot do what they do at once: the second moves a plate, the first handles a part on it.
-    """
-
-    why: str
-    says: str
-    do: str
-    met: Met
-    is_sure: bool = False
-
-
-MOST_DOUBTS = 12
-"""That are told; of two transitions one."""
-APART = (
-    "let the net command one of them only when the other one has answered: with a place of the supervisor with one "
-    "token, which is taken before each of these commands and given back on its answer"
-)
 
 
 class Situations:
@@ -122,16 +57,15 @@ class Situations:
         self.riders: list[Part] = []
         """what stands on plates in some situation, the first of each kind on each plate"""
         self._rider: dict[tuple[str, str], int] = {}
-        self.why = graph.why
-        self.doubts: dict[tuple[object, ...], Doubt] = {}
-        self._near: dict[tuple[int, int], list[tuple[str, PartEvent]]] = {}
+        self._doubts = Doubts(graph)
         names = {o.name: o.index for o in graph.partition.owners}
         self._numbers_of = {r: i for i, r in enumerate(self.robots)}
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
         cell = doing.start.parts.cell
         tables = {r.name: r.carrying for r in cell.moving} if cell.kinds else {}
-        self._with_tables = frozenset(name for name, own in tables.items() if own)
+        with_tables = frozenset(name for name, own in tables.items() if own)
+        self._at_once = AtOnce(graph, doing, self._doubts, with_tables)
         self._owner_names = {o.index: o.name for o in graph.partition.owners}
         self._acting = {
             o.index for o in graph.partition.owners if o.kind is not OwnerKind.SUPERVISOR
@@ -157,12 +91,22 @@ class Situations:
                 if after is None:
                     continue
                 if len(self.situations) >= most and after.key not in self._numbers:
-                    self.why = self.why or "situations"
+                    self._doubts.because("situations")
                     continue
                 before = len(self.situations)
                 found = self._number(after, number, element)
                 if found == before:
                     todo.append(found)
+
+    @property
+    def why(self) -> str:
+        """Why not all is known; empty: all is."""
+        return self._doubts.why
+
+    @property
+    def doubts(self) -> Collection[Doubt]:
+        """What keeps it from being known."""
+        return self._doubts.told.values()
 
     @property
     def sees(self) -> bool:
@@ -207,7 +151,7 @@ class Situations:
 
     def at_once(self) -> Iterator[tuple[Side, Side]]:
         """What two programs do at once of which not all is known."""
-        for doubt in self.doubts.values():
+        for doubt in self.doubts:
             if len(doubt.met.elements) == 2:
                 one, other = (self._side_of(e) for e in doubt.met.elements)
                 if one[0] != other[0]:
@@ -245,13 +189,10 @@ class Situations:
             arm = self._arm_of.get(e.owner)
             stand = here.stands[arm] if arm is not None else None
             name = self._owner_names[e.owner]
-            out[element] = self.doing.of(name, commands, stand, here.contents, self._turned(here))
+            out[element] = self.doing.of(
+                name, commands, stand, here.contents, self._at_once.turned(here)
+            )
         return out
-
-    def _turned(self, here: Situation) -> tuple[Stand, ...]:
-        """Where the arms stand that have turntables, or parts in their tools: parts can be there."""
-        holders = {p.holder for p in here.contents.parts.present.values()}
-        return tuple(s for s in here.stands if s.robot in self._with_tables or s.robot in holders)
 
     def _after(
         self, number: int, element: int, target: int, under_way: dict[int, Activity]
@@ -353,12 +294,12 @@ class Situations:
                 continue
             there = there if there is not None else {x for x, _ in self.graph.arcs[target]}
             if other not in there:
-                says = f"when {self._name(element)} occurs, {self._name(other)} cannot any more"
+                says = f"when {self._doubts.name(element)} occurs, {self._doubts.name(other)} cannot any more"
                 do = (
                     "let nothing but its own program take away what a transition with commands waits for, and let it "
                     "have one binding at a time"
                 )
-                self._doubt("overtaken", number, (other, element), says, do)
+                self._doubts.note("overtaken", number, (other, element), says, do)
 
     def _note(self, number: int, here: Situation, under_way: dict[int, Activity]) -> None:
         busy: set[int] = set()
@@ -399,11 +340,7 @@ class Situations:
                 self.pairs.setdefault((a.number, b.number), Met(number, (e, f)))
         self._note_parts(number, here, under_way, by_arm)
         self._note_put_down(number, here, under_way)
-        self._expect_order(number, under_way)
-        self._expect_leant_on(number, under_way)
-        if self._with_tables:
-            self._expect_still(number, under_way)
-            self._expect_none_between(number, under_way)
+        self._at_once.look(number, here, under_way)
 
     def _note_riders(self, here: Situation) -> None:
         """What stands on plates, whatever their owners do."""
@@ -450,148 +387,17 @@ class Situations:
             halfway = {c.number: c for c in b.between[1:-1]}
             for contents in halfway.values():
                 if contents not in (b.between[0], b.after):
-                    again = self._again(here, e, a, contents)
+                    again = self._at_once.again(here, e, a, contents)
                     if again.is_part or again.doubt:
                         self.activities.setdefault((again.number, e), Met(number, (e, f)))
 
-    def _doubt(self, why: str, number: int, elements: tuple[int, ...], says: str, do: str) -> None:
-        """Notes why not all is known, and the first situation in which that is so."""
-        self.why = self.why or why
-        self._told((why, *(self.graph.elements[e].transition for e in elements)), Doubt(
-            why, says, do, Met(number, elements)
-        ))  # fmt: skip
-
-    def _told(self, key: tuple[object, ...], doubt: Doubt) -> None:
-        if key not in self.doubts and (doubt.is_sure or len(self.doubts) < MOST_DOUBTS):
-            self.doubts[key] = doubt
-
     def _outside(self, element: int, here: Situation) -> None:
         """What an element has told depends on more than tokens."""
-        self.why = self.why or "outside"
+        self._doubts.because("outside")
         if here.key in self._numbers:  # else it will be
-            says = f"what {self._name(element)} tells its robot depends on more than tokens"
+            says = f"what {self._doubts.name(element)} tells its robot depends on more than tokens"
             do = "let the net decide it by a token, or by a sensor"
-            self._doubt("outside", self._numbers[here.key], (element,), says, do)
-
-    def _name(self, element: int) -> str:
-        """Of its transition."""
-        t = self.graph.elements[element].transition
-        return f"`{self.graph.partition.net.transitions[t].name}`"
-
-    def _expect_order(self, number: int, under_way: dict[int, Activity]) -> None:
-        """What two do to parts must come to the same in both orders; else it depends on how far each is.
-
-        Parts of different kinds stand on each other, too.
-        """
-        here = self.situations[number]
-        handling = [(e, a) for e, a in under_way.items() if a.kinds]
-        for (e, a), (f, b) in itertools.combinations(handling, 2):
-            if self.graph.elements[e].owner == self.graph.elements[f].owner:
-                continue
-            if a.fault or b.fault or not self._commute(here, e, a, f, b):
-                self._in_order(number, (e, a), (f, b))
-
-    def _in_order(
-        self, number: int, one: tuple[int, Activity], other: tuple[int, Activity]
-    ) -> None:
-        """Two come to something else in the other order."""
-        (e, a), (f, b) = one, other
-        if a.fault or b.fault:  # which is told
-            self.why = self.why or "order"
-            return
-        does = "; ".join(self._does_to_parts(x) for x in (one, other))
-        says = (
-            f"one of {self._name(e)} and {self._name(f)} is impossible, or comes to something else, after the other: "
-            f"{does}"
-        )
-        self._doubt("order", number, (e, f), says, APART)
-
-    def _does_to_parts(self, one: tuple[int, Activity]) -> str:
-        element, activity = one
-        name = self._owner_names[self.graph.elements[element].owner]
-        said = dict.fromkeys(m.says for m in activity.part_events if m.goes)
-        if said:
-            return ", ".join(said)
-        kinds = " and ".join(f"`{k}`" for k in sorted(activity.kinds))
-        return f"`{name}` has to do with {kinds}"
-
-    def _commute(self, here: Situation, e: int, a: Activity, f: int, b: Activity) -> bool:
-        first = self._again(here, f, b, a.after)
-        second = self._again(here, e, a, b.after)
-        return not (first.fault or second.fault) and first.after is second.after
-
-    def _again(
-        self, here: Situation, element: int, activity: Activity, contents: Contents
-    ) -> Activity:
-        owner = self.graph.elements[element].owner
-        stand = activity.legs[0][0].start if activity.legs else None
-        name = self._owner_names[owner]
-        commands = self.graph.commands(element)
-        return self.doing.of(name, commands, stand, contents, self._turned(here))
-
-    def _expect_leant_on(self, number: int, under_way: dict[int, Activity]) -> None:
-        """An arm stands while a clamp closes on the part in its tool; else it may be gone, or not be there yet."""
-        leans = {robot: e for e, a in under_way.items() for robot in a.leans}
-        for element, activity in under_way.items():
-            owner = self._owner_names[self.graph.elements[element].owner]
-            if owner in leans and any(leg.is_moving for leg, _ in activity.legs):
-                says = f"a clamp closes on what `{owner}` holds, which moves meanwhile"
-                self._doubt("order", number, (leans[owner], element), says, APART)
-
-    def _expect_none_between(self, number: int, under_way: dict[int, Activity]) -> None:
-        """What somebody else has put on a turntable half way through is there before or after; else it is not seen."""
-        for element, activity in under_way.items():
-            if activity.kinds and len(activity.between) > 2:
-                owner = self._owner_names[self.graph.elements[element].owner]
-                ends = _on_plates(activity.between[0], owner) | _on_plates(activity.after, owner)
-                if any(_on_plates(c, owner) - ends for c in activity.between[1:-1]):
-                    says = f"half way through {self._name(element)} there is a part on a plate or belt of another one"
-                    do = "let it be put there and taken from there by two transitions"
-                    self._doubt("order", number, (element,), says, do)
-
-    def _expect_still(self, number: int, under_way: dict[int, Activity]) -> None:
-        """Nobody handles a part on a turntable, or where that could take one, while another arm turns it."""
-        for (e, a), (f, b) in itertools.permutations(under_way.items(), 2):
-            if not b.part_events or not (a.turns or a.may_run):
-                continue
-            if self.graph.elements[e].owner == self.graph.elements[f].owner:
-                continue
-            if (a.number, b.number) not in self._near:
-                self._near[a.number, b.number] = self.doing.part_events_near(a, b)
-            found = self._near[a.number, b.number]
-            if found:
-                self._turning(number, (e, a), (f, b), found)
-
-    def _turning(
-        self,
-        number: int,
-        mover: tuple[int, Activity],
-        other: tuple[int, Activity],
-        found: list[tuple[str, PartEvent]],
-    ) -> None:
-        """One handles parts where a plate of another one moves."""
-        (e, a), (f, _) = mover, other
-        self.why = self.why or "turning"
-        if other[1].fault:  # which is told
-            return
-        sure = [(p, m) for p, m in found if p in m.plates and self.doing.moves_first(a, p)]
-        is_sure = bool(sure)
-        plate, event = (sure or found)[0]
-        x, y, z = (f"{1000.0 * v:.0f}" for v in event.point)
-        if is_sure:
-            moves = self.doing.does(plate)
-            says = f"{event.says} {event.goes} `{plate}` while that {moves}, at ({x}, {y}, {z}) mm"
-        else:
-            on = "can be" if plate in event.plates else "can come"
-            says = (
-                f"{event.says} at ({x}, {y}, {z}) mm, where `{plate}`, or what it takes along, {on} meanwhile: what "
-                "becomes of parts depends on how far that is"
-            )
-        key = ("turning", *(self.graph.elements[i].transition for i in (f, e)))
-        doubt = Doubt("turning", says, APART, Met(number, (f, e)), is_sure)
-        if is_sure and key in self.doubts and not self.doubts[key].is_sure:
-            del self.doubts[key]
-        self._told(key, doubt)
+            self._doubts.note("outside", self._numbers[here.key], (element,), says, do)
 
     def parts(self) -> dict[str, Part]:
         """Each part that ever stands somewhere, by its spot."""
@@ -600,9 +406,3 @@ class Situations:
             for contents in activity.between:
                 out |= contents.standing
         return out
-
-
-def _on_plates(contents: Contents, but: str) -> set[str]:
-    """What stands on turntables of others."""
-    parts = contents.parts.present.values()
-    return {spot(p) for p in parts if p.plate and p.carrier != but}

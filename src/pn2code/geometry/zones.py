@@ -17,7 +17,8 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg
-from pn2code.geometry.situations import ON_PLATE, Side, Situation, Situations
+from pn2code.geometry.situation import ON_PLATE, Side, Situation
+from pn2code.geometry.situations import Situations
 from pn2code.geometry.where import at_rest, stands_at
 from pn2code.geometry.words import listed, reason
 from pn2code.robot.part import Part
@@ -187,7 +188,7 @@ class Zones:
         if found.why:
             return f"with it, {reason(found.why)}", ""
         if found.doubts:
-            doubt = next(iter(found.doubts.values()))
+            doubt = next(iter(found.doubts))
             return f"with it, {doubt.says}", ""
         if self._can_meet(found, zone, bad):
             return "with it, arms can still collide", ""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pn2code.geometry.around import around_of
-from pn2code.geometry.situations import Met
+from pn2code.geometry.situation import Met
 from pn2code.robot.transforms import translation
 
 

@@ -18,7 +18,7 @@ from pn2code.geometry.look import Look
 from pn2code.geometry.pieces import Front, Level, gaps
 from pn2code.geometry.progress import Meeting
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.situations import Met
+from pn2code.geometry.situation import Met
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
