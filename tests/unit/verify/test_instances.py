@@ -127,6 +127,33 @@ def test_zero_and_minus_zero_are_two_values() -> None:
     assert found(text[::-1].replace("0.0"[::-1], "~0.0"[::-1], 1)[::-1]).families == ()
 
 
+def test_arcs_that_read_what_another_one_changes_have_an_order() -> None:
+    text = """
+    net Order
+      standard
+      var n: INT;
+      globref last = 0;
+      page Top
+        place A1 : INT = 1`0
+        place A2 : INT = 1`0
+        place B1 : INT
+        place B2 : INT
+        trans T1
+          in A1 : n
+          out A1 : (last := !last + 1; 1`(!last))
+          out B1 : 1`(!last)
+        trans T2
+          in A2 : n
+          out B2 : 1`(!last)
+          out A2 : (last := !last + 1; 1`(!last))
+    """
+    assert found(text).families == ()
+    lines = text.splitlines(keepends=True)
+    put = next(i for i, line in enumerate(lines) if "out B2" in line)
+    same = "".join([*lines[:put], lines[put + 1], lines[put], *lines[put + 2 :]])
+    assert found(same).names() == ("exchanges of Top.T1, Top.T2",)
+
+
 def test_numbers_of_instances_are_part_of_an_inscription() -> None:
     assert found(CELL.replace("[n, 1]", "[n, inst ()]")).families == ()
 

@@ -103,3 +103,9 @@ def test_it_says_how_many_markings_were_known(net: FlatNet) -> None:
         "Components": "not known, since markings were forgotten",
     }
     assert row(net, own)["sweep"] == {**SWEPT, "measure": "A + 2 * B"}
+
+
+def test_what_was_ended_before_it_said_anything_changes_nothing(net: FlatNet) -> None:
+    first = found(net, *ANSWERS)
+    late = Exploration.of(net, nothing(net, Limits(), "seconds"), 0.0)
+    assert sweep.joined(first, late) is first

@@ -70,6 +70,8 @@ def joined(first: Exploration, again: Exploration, *, needs_graph: bool = False)
         again: what came after it.
         needs_graph: whether there still was no memory for all that was wanted, then.
     """
+    if len(again.answers) != len(first.answers):  # it was ended before it said anything
+        return first
     answers = tuple(
         a if a["answer"] != "unknown" else b
         for a, b in zip(first.answers, again.answers, strict=True)

@@ -2,9 +2,9 @@
 
 Shapes are compared exactly. Two are equal only if guards, inscriptions, code segment, delay, priority and the order in
 which all of this is evaluated are the same, and so are the net variables, and the declared names that are used. Arcs
-that only put tokens, inhibit or clear are in no order, if their inscriptions change no references: what they do is done
-together. What an inscription declares for itself (the `x` of `fn x => ..`) may be another symbol of the same name and
-type, as it is on a page that was drawn twice.
+that only put tokens, inhibit or clear are in no order, if their inscriptions neither read nor change references: what
+they do is done together. What an inscription declares for itself (the `x` of `fn x => ..`) may be another symbol of the
+same name and type, as it is on a page that was drawn twice.
 """
 
 from __future__ import annotations
@@ -18,6 +18,9 @@ from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effect, effects_of
+
+_HELD = frozenset({Effect.READ, Effect.WRITE})
+"""What makes the order of two arcs matter: one may read what the other one has changed."""
 
 
 class Shapes:
@@ -55,7 +58,9 @@ class Shapes:
     def _arc(self, index: int, a: FlatArc, ranks: dict[int, int]) -> int:
         """Of one; `ranks` gets its position among those that have an order."""
         is_free = a.kind not in (ArcKind.INPUT, ArcKind.BOTH)
-        if a.inscription is not None and Effect.WRITE in self._effects.of(a.inscription.value):
+        if a.inscription is not None and not _HELD.isdisjoint(
+            self._effects.of(a.inscription.value)
+        ):
             is_free = False
         if not is_free:
             ranks[index] = len(ranks)
