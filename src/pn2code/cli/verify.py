@@ -15,7 +15,7 @@ import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.os_reason import os_reason
-from pn2code.base.progress_line import told
+from pn2code.base.progress_line import Line, told
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
@@ -99,6 +99,8 @@ EPILOG = """Examples:
   pn2code verify small.cpn --draw graph.html
 
   pn2code verify examples/welding --durations
+
+  pn2code verify examples/shared-zone --geometry
 
   pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
@@ -292,6 +294,14 @@ def verify(
             "`within N seconds` with it (docs/time.md).",
         ),
     ] = False,
+    geometry: Annotated[
+        bool,
+        typer.Option(
+            "--geometry",
+            help="Look also at the arms of a cell in space, as `pn2code check --geometry` does: all moves and pairs of "
+            "moves that the net permits (docs/geometry.md).",
+        ),
+    ] = False,
     unbounded_ok: Annotated[
         bool,
         typer.Option(
@@ -340,6 +350,7 @@ def verify(
         ("--spill", spill is not None),
         ("--threads", threads is not None),
         ("--durations", durations),
+        ("--geometry", geometry),
     )
     check_options(swarm, scheduler, workers, reductions, unused)
     sweeps = wanted_sweep(
@@ -371,6 +382,8 @@ def verify(
                     f"only a cell has durations, and there is no cell.toml beside `{net}`",
                     param_hint="--durations",
                 )
+            if geometry:
+                _check_geometric(opened, report_to, d)
     except TimeIsOverError:
         _stop_unread(net, d, as_json, form)
     if d.has_errors:
@@ -440,6 +453,8 @@ def verify(
             said = conclude(looked, opened, asked, limits, folder, d, checks)
         if durations:
             said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
+        if geometry:
+            said = _in_space(said, opened, limits, folder, d, form, quiet=as_json or quiet)
         if in_full:  # sorting all colours and making texts of them takes time, too
             said = replace(
                 said,
@@ -488,6 +503,40 @@ def _timed(
     if timed is None:
         stop(d, form)
     return timed
+
+
+def _check_geometric(opened: OpenNet, report_to: Path | None, d: Diagnostics) -> None:
+    """Refuses `--geometry` where there are no arms to look at, or nothing to look with."""
+    from pn2code.geometry.check import cell_of, is_there
+
+    if report_to is not None:
+        raise typer.BadParameter(
+            "the report with the geometry of a cell is that of `pn2code report`",
+            param_hint="--geometry",
+        )
+    config = cell_of(opened, d)
+    if config is not None:
+        is_there(config, d)
+
+
+def _in_space(
+    said: Said,
+    opened: OpenNet,
+    limits: Limits,
+    folder: Path,
+    d: Diagnostics,
+    form: Format,
+    *,
+    quiet: bool,
+) -> Said:
+    """The same, with what is said of the arms in space."""
+    from pn2code.geometry.verified import with_geometry
+
+    with playing(form), Line(shown=not quiet, plain=True) as progress:
+        told = with_geometry(said, opened, limits, folder, d, progress.stage, progress.say)
+    if told is None:
+        stop(d, form)
+    return told
 
 
 def _stop_unread(net: Path, d: Diagnostics, as_json: bool, form: Format) -> NoReturn:

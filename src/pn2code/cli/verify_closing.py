@@ -1,4 +1,4 @@
-"""The last lines of what `pn2code verify` prints: durations, notes, the verdict."""
+"""The last lines of what `pn2code verify` prints: durations, arms in space, notes, the verdict."""
 
 from __future__ import annotations
 
@@ -20,6 +20,13 @@ def durations_of(said: Said) -> Iterator[str]:
         yield from row("Durations" if i == 0 else "", line)
 
 
+def in_space_of(said: Said) -> Iterator[str]:
+    """What is said of the arms in space."""
+    for i, line in enumerate(said.geometry.lines if said.geometry is not None else ()):
+        yield from ([""] if i == 0 else [])
+        yield from row("Arms in space" if i == 0 else "", line)
+
+
 def ending(said: Said) -> str:
     """The last lines: what a yes leaves to be remarked, then the verdict."""
     return "\n".join([*(f"{NOTE}{x}" for x in said.notes), closing(said)])
@@ -29,7 +36,7 @@ def closing(said: Said) -> str:
     """The last line; a yes about a cell names what it is not about."""
     text_ = outcome.closing(said.net, said.found, said.counts)
     things = in_space(said.config) if said.config is not None and said.control is not None else ()
-    if not things or said.verdict != "yes":
+    if not things or said.geometry is not None or said.verdict != "yes":
         return text_
     listed = " and ".join(filter(None, (", ".join(things[:-1]), things[-1])))
     return f"{text_.removesuffix('.')} ({listed} in space: `check --geometry`)."

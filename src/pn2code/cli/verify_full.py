@@ -58,6 +58,8 @@ def full(said: Said) -> str:
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
     timed = "\n".join(durations_of(said)).strip("\n")
+    if said.geometry is not None:
+        parts.append(f"Arms in space\n\n{said.geometry.text.rstrip()}")
     return "\n\n\n".join([*parts, *([timed] if timed else ()), ending(said)])
 
 

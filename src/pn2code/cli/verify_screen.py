@@ -6,6 +6,7 @@ print(screen(said))      # at most about 40 lines
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
 from pn2code.cli.verify_answers import (
     counted_premises,
@@ -14,7 +15,7 @@ from pn2code.cli.verify_answers import (
     premises_of,
     wrong_lines,
 )
-from pn2code.cli.verify_closing import NOTE, closing, durations_of
+from pn2code.cli.verify_closing import NOTE, closing, durations_of, in_space_of
 from pn2code.cli.verify_rows import WIDTH
 from pn2code.cli.verify_run import run_lines
 from pn2code.cli.verify_sizes import as_it_runs, counted_remarks, crowd_of, sizes_of
@@ -23,9 +24,24 @@ from pn2code.verify.answers import outcome
 
 MOST_LINES = 40
 """Of one screen."""
+LEAST_REASONS = 16
+"""Lines of what is wrong with arms in space that are shown in any case."""
 LEAST_WAY = 12
 """Lines that a run gets before further failures do: its head, steps, and why it goes on no more."""
 _MORE = "`--full` prints the whole report, `--report FILE` writes it (.html or .txt)."
+
+
+def _cut(lines: Sequence[str], room: int) -> list[str]:
+    """As many lines as there is room for; what is left out is said."""
+    shown = [
+        line
+        for text_ in lines
+        for line in (textwrap.wrap(text_, WIDTH, subsequent_indent="  ") or [""])
+    ]
+    if len(shown) <= room:
+        return shown
+    left = len(shown) - room + 1
+    return [*shown[: room - 1], f"... and {left} lines more (`--full`)"]
 
 
 def screen(said: Said) -> str:
@@ -40,7 +56,7 @@ def screen(said: Said) -> str:
     items = tuple(items_of(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     counts = ["", *counts_of(said)] if items else []
-    premises, timed = list(premises_of(said)), list(durations_of(said))
+    premises, timed = list(premises_of(said)), [*durations_of(said), *in_space_of(said)]
     end = ["", *textwrap.wrap(_MORE, WIDTH)]
     for note in said.notes:
         end += textwrap.wrap(f"{NOTE}{note}", WIDTH, subsequent_indent="  ")
@@ -63,4 +79,7 @@ def screen(said: Said) -> str:
     path = run_lines(said, wrong, room)
     if path:
         lines += ["", *path]
+    if said.geometry is not None:
+        room = MOST_LINES - len(lines) - len(end) - 1
+        lines += _cut(said.geometry.reasons, max(room, LEAST_REASONS))
     return "\n".join([*lines, *end])

@@ -23,6 +23,22 @@ def text(layouts: Sequence[Layout], *, full: bool) -> str:
     return "\n".join(line for layout in layouts for line in _lines(layout, full))
 
 
+def answers(layouts: Sequence[Layout]) -> Iterator[str]:
+    """What is said, without the table of moves and what is behind it: of each layout both answers."""
+    for layout in layouts:
+        if layout.name:
+            yield f"layout `{layout.name}`:"
+        if layout.open:
+            yield f"not all is known: {layout.open}"
+        yield from (line.strip() for line in _verdicts(layout))
+
+
+def reasons(layouts: Sequence[Layout]) -> Iterator[str]:
+    """What is wrong or not known, where, with the runs that lead there, and what would keep it from being so."""
+    for layout in layouts:
+        yield from _reasons(layout)
+
+
 def _lines(layout: Layout, full: bool) -> Iterator[str]:
     where = f"Layout `{layout.name}`: " if layout.name else ""
     yield (
@@ -35,6 +51,11 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
     yield from _table(layout, full)
     yield ""
     yield from _verdicts(layout)
+    yield from _reasons(layout)
+    yield ""
+
+
+def _reasons(layout: Layout) -> Iterator[str]:
     for move in layout.moves:
         if move.answer != "yes":
             yield from _bad_move(move, layout.devices)
@@ -44,7 +65,6 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
         yield from _open_at(at)
     for proposal in layout.proposals:
         yield from _proposed(proposal)
-    yield ""
 
 
 def _open_at(x: Open) -> Iterator[str]:

@@ -77,6 +77,29 @@ class Durations(Protocol):
         """For programs."""
 
 
+class InSpace(Protocol):
+    """What is said of the arms in space, as it is printed."""
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """How each answer came out."""
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """For the screen."""
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """What is wrong or not known."""
+
+    @property
+    def text(self) -> str:
+        """All of it."""
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+
+
 @frozen
 class Looked:
     """What was explored; the runs that properties have led to have no names yet.
@@ -108,6 +131,7 @@ class Said:
         deadline: when it is over no run is played any more.
         config: of the cell; None: the net is none.
         durations: what was measured of the commands; None: it was not asked for.
+        geometry: what is said of the arms in space; None: it was not asked for.
     """
 
     net: FlatNet
@@ -120,14 +144,16 @@ class Said:
     deadline: Deadline = NEVER
     config: CellConfig | None = None
     durations: Durations | None = None
+    geometry: InSpace | None = None
 
     @property
     def kinds(self) -> list[str]:
-        """How each answer came out, "good", "bad" or "open": checks of the supervisor, of the files, properties."""
+        """How each answer came out, "good", "bad" or "open": supervisor, files, properties, arms in space."""
         return [
             *(check.kind for check in (self.control.checks if self.control else ())),
             *(_KINDS.get(a.answer, "open") for a in self.channel_model),
             *map(kind, self.answers),
+            *(self.geometry.kinds if self.geometry is not None else ()),
         ]
 
     @property
@@ -162,6 +188,8 @@ class Said:
         row["notes"] = list(self.notes)
         if self.durations is not None:
             row["durations"] = self.durations.row()
+        if self.geometry is not None:
+            row["geometry"] = self.geometry.row()
         return row
 
 
