@@ -284,9 +284,16 @@ def answered(
                 TRACE_UNWRITABLE,
                 f"the run that shows why `{answer.about.name}` is {_CALLED[answer.answer]} cannot be written",
                 answer.about.origin,
-                hint="give another folder with `--traces DIR`",
+                hint=how_to_have_runs(found, None if control is None else control.found),
             )
     return tuple(looked)
+
+
+def how_to_have_runs(*spaces: Exploration | None) -> str:
+    """What to do where a run could not be written."""
+    if any(found is not None and found.why == "memory" for found in spaces):
+        return "no memory was left to look for the way: give more with `--memory`, or ask for less at once"
+    return "give another folder with `--traces DIR`"
 
 
 def _of_net(a: Answer) -> Answer:

@@ -342,9 +342,9 @@ def conclude(
     if outcome.has_raised(found):
         _tell_error(opened, found, d)
     if found.graph is not None and len(found.traces) < min(limits.traces, found.dead_count):
-        _unwritable("a dead marking", folder, d)
+        _unwritable("a dead marking", found, folder, d)
     if found.error and found.error.get("node") and limits.traces and found.error_trace is None:
-        _unwritable("the marking in which an exception is raised", folder, d)
+        _unwritable("the marking in which an exception is raised", found, folder, d)
     return Said(
         opened.flat,
         opened.storage,
@@ -441,10 +441,10 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     )
 
 
-def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:
+def _unwritable(goal: str, found: Exploration, folder: Path, d: Diagnostics) -> None:
     d.warning(
         TRACE_UNWRITABLE,
         f"a trace to {goal} cannot be written into `{folder}`",
         Origin(str(folder)),
-        hint="give another folder with `--traces DIR`, or write none with `--most-traces 0`",
+        hint=f"{properties.how_to_have_runs(found)}, or write none with `--most-traces 0`",
     )

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from pn2code.verdict.properties import had_time
+from pn2code.verdict.properties import had_time, how_to_have_runs
 
 
 @pytest.mark.parametrize(
@@ -26,3 +26,10 @@ def test_whose_time_was_over(net: str, cell: str | None, of_cell: bool, had: boo
     control = SimpleNamespace(found=None if cell is None else SimpleNamespace(why=cell))
     answer = SimpleNamespace(cell=of_cell)
     assert had_time(cast(Any, answer), cast(Any, found), cast(Any, control)) is had
+
+
+@pytest.mark.parametrize(("net", "cell"), [("memory", None), ("complete", "memory")])
+def test_where_memory_was_missing_no_other_folder_is_proposed(net: str, cell: str | None) -> None:
+    spaces = (SimpleNamespace(why=net), None if cell is None else SimpleNamespace(why=cell))
+    assert "`--memory`" in how_to_have_runs(*cast(Any, spaces))
+    assert "`--traces DIR`" in how_to_have_runs(cast(Any, SimpleNamespace(why="states")), None)
