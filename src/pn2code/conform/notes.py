@@ -16,9 +16,11 @@ from typing import Any
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
+from pn2code.conform.disturbed import Disturbed
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener
 from pn2code.robot.commands import ToolAction
+from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.trace.parties import RUN
 
@@ -49,6 +51,7 @@ class RunNotes:
         self._holder |= config.tools_at_start
         self._busy_until = dict.fromkeys(self._names[1:], 0.0)
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._names[1:]}
+        self._disturbed = Disturbed(config, partition)
         self._calls = Calls()
         self._listener: Listener | None = None
 
@@ -65,9 +68,12 @@ class RunNotes:
         if robot not in self._actions:
             return f"there is no robot or device `{robot}`"
         if line["event"] in ("hold", "stand", "message"):
-            return None  # it only takes time; of messages the net knows that they arrive
+            return self._disturbed.note(line)
         if line["event"] == "tool":
             begun, duration = float(line["t"]), float(line["duration"])
+            stands = self._disturbed.begins(robot, begun)
+            if stands is not None:
+                return stands
             if begun < self._busy_until[robot] - _ROUNDING_S:
                 return f"`{robot}` is still at its tool's action before, until {self._busy_until[robot]:g} s"
             self._busy_until[robot] = begun + duration
@@ -110,11 +116,16 @@ class RunNotes:
         with self._listener.noting(self._calls):
             yield
 
-    def step(self, line: Mapping[str, Any], t: FlatTransition) -> str | None:
+    def step(
+        self, line: Mapping[str, Any], t: FlatTransition, before: Marking, after: Marking
+    ) -> str | None:
         """The notes since the last step of the same robot are those of this one."""
         owner = self._owner[t.index]
-        if self._listener is None or owner == 0:
+        if self._listener is None:
             return None
+        problem = self._disturbed.step(line, t, before, after)
+        if problem is not None or owner == 0:
+            return problem
         robot = self._names[owner]
         ordered = [(c.action, c.duration) for c in self._calls if isinstance(c, ToolAction)]
         noted, self._actions[robot] = self._actions[robot], []
@@ -155,9 +166,10 @@ class RunNotes:
         if self._listener is None or why != "finished":
             return None
         for robot, owner in zip(self._names[1:], range(1, len(self._names)), strict=True):
-            if (self._actions[robot] or self._said[robot]) and not self._goes_on(game, owner):
+            left = self._actions[robot] or self._said[robot] or self._disturbed.left(robot)
+            if left and not self._goes_on(game, owner):
                 return f"the notes of `{robot}` at the end belong to no step"
-        return None
+        return self._disturbed.held()
 
     def _goes_on(self, game: Game, owner: int) -> bool:
         try:

@@ -219,7 +219,7 @@ class Engine:
                 return
         raise CellStoppedError(
             f"supervisor and robots exchanged {MOST_AT_ONCE} messages at {self.now:.3f} s without time "
-            "passing; one of them answers itself"
+            "passing; they may go on so for ever"
         )
 
     def _supervisor_cycle(self) -> bool:

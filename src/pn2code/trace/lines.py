@@ -6,6 +6,8 @@ Each function gives what is wrong, in words, or None.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isfinite
+from sys import float_info
 from typing import Any, TypeGuard
 
 from pn2code.net.flat import FlatNet, FlatTransition
@@ -24,14 +26,14 @@ _NOTES: Mapping[str, Mapping[str, type]] = {
     "hold": {"t": float, "event": str, "robot": str, "by": str},
     "stand": {"t": float, "event": str, "robot": str, "duration": float},
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
-    "message": {"t": float, "event": str, "robot": str, "channel": str, "fate": str},
+    "message": {"t": float, "event": str, "robot": str, "channel": str, "fate": str, "by": str},
 }
 _MORE: Mapping[str, Mapping[str, type]] = {
     "header": {"seed": int, "still": bool},
     "end": {"final": list, "reason": str, "loop": int},
     "stand": {"by": str},
     "sense": {"by": str},
-    "message": {"by": str, "seconds": float},
+    "message": {"seconds": float},
 }
 """Members that a line may have; all others it must have."""
 
@@ -68,13 +70,15 @@ def form_problem(line: Mapping[str, Any], *, is_first: bool) -> str | None:
 
 def _is_of(value: object, wanted: type) -> bool:
     if wanted is float:
-        return is_number(value)
+        return is_number(value) and abs(value) <= float_info.max
     return isinstance(value, wanted) and (wanted in (object, bool) or not isinstance(value, bool))
 
 
 def is_number(t: object) -> TypeGuard[int | float]:
-    """Whether a member is a number (JSON's true and false are none)."""
-    return isinstance(t, int | float) and not isinstance(t, bool)
+    """Whether a member is a number (JSON's true and false are none, nor are Python's NaN and Infinity)."""
+    if isinstance(t, float):
+        return isfinite(t)
+    return isinstance(t, int) and not isinstance(t, bool)
 
 
 def digest_problem(header: Mapping[str, Any], net: FlatNet, parties: Parties) -> str | None:

@@ -343,7 +343,7 @@ def _step(
     for symbol in _outputs(t):
         _compare(symbol, occurred.binding[symbol], given[symbol])
     if notes is not None:
-        _refuse(notes.step(line, t))
+        _refuse(notes.step(line, t, game.marking, marking))
     game.marking = marking
     game.steps += 1
     if clock is not None:
@@ -362,7 +362,10 @@ def _moment(game: Game, line: dict[str, Any], rules: Rules) -> Marking:
 def _model_time(game: Game, t: float, rules: Rules) -> int | float:
     """What the clock of a supervisor shows at a second of the run: whole units, but for the rounding of `t`
     (cnative/src/supervisor/supervisor_play.c)."""
-    scaled = t / rules.time_unit
+    try:
+        scaled = t / rules.time_unit
+    except OverflowError:
+        raise _Wrong("its time `t` is too large") from None
     return scaled if game.net.real_time else math.floor(scaled + 1e-9 * max(1.0, abs(scaled)))
 
 

@@ -119,6 +119,8 @@ def _run(game: Game, line: Mapping[str, Any], why: str, ending: Ending) -> str |
         return "it says that the run repeats for ever, which only simulators and `verify` can know"
     if why == FINISHED and "reason" in line:
         return "it gives a reason why the run did not finish, but says that it did"
+    if ending.by == RUN and why in RUN_ENDS and why != FINISHED:
+        return _broken_off(line, why)
     if why not in RUN_ENDS and (ending.by == RUN or not _may_be_told(why)):
         return _alone(game, why, ending)
     if why != FINISHED or not ending.parties.is_known:
@@ -129,6 +131,13 @@ def _run(game: Game, line: Mapping[str, Any], why: str, ending: Ending) -> str |
         return None
     names = ", ".join(f"`{game.net.places[p].name}`" for p in ending.parties.final)
     return f"it says that the cell has finished, but there is no token in {names}"
+
+
+def _broken_off(line: Mapping[str, Any], why: str) -> str | None:
+    """A run of a cell that has not come to its end says why, and has no final place."""
+    if "final" in line:
+        return f'it says "{why}", but names final places as if the run had finished'
+    return None if line.get("reason") else f'it says "{why}", but not for which reason'
 
 
 def _may_be_told(why: str) -> bool:

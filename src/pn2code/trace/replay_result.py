@@ -78,8 +78,10 @@ class Notes(Protocol):
     def occurring(self) -> AbstractContextManager[None]:
         """While a transition occurs."""
 
-    def step(self, line: Mapping[str, Any], t: FlatTransition) -> str | None:
-        """After it has occurred."""
+    def step(
+        self, line: Mapping[str, Any], t: FlatTransition, before: Marking, after: Marking
+    ) -> str | None:
+        """After it has occurred; the markings around it."""
 
     def end(self, game: Game, why: str) -> str | None:
         """The last line."""

@@ -10,9 +10,11 @@ from pn2code.robot.commands import ToolAction
 
 
 def notes() -> RunNotes:
-    config: Any = SimpleNamespace(primitives=None, sensors=(), parts_at_start={}, tools_at_start={})
+    config: Any = SimpleNamespace(
+        primitives=None, sensors=(), parts_at_start={}, tools_at_start={}, channels=()
+    )
     owners = [SimpleNamespace(name="supervisor"), SimpleNamespace(name="belt")]
-    partition: Any = SimpleNamespace(transition_owner=(1,), owners=owners)
+    partition: Any = SimpleNamespace(transition_owner=(1,), owners=owners, channels=())
     made = RunNotes(config, partition)
     listener: Any = object()
     made._listener = listener
@@ -27,7 +29,8 @@ def tool(t: float) -> dict[str, Any]:
 
 def step(made: RunNotes, t: float) -> str | None:
     transition: Any = SimpleNamespace(index=0, plan=())
-    return made.step({"t": t, "binding": {}}, transition)
+    marking: Any = SimpleNamespace(places=())
+    return made.step({"t": t, "binding": {}}, transition, marking, marking)
 
 
 def test_a_step_ends_after_its_actions() -> None:

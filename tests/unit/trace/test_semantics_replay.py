@@ -437,7 +437,7 @@ def test_only_programs_of_a_cell_write_notes(net: FlatNet, by: str, ok: bool) ->
 def test_only_who_knows_says_that_a_run_repeats_for_ever(net: FlatNet, by: str) -> None:
     written = lines(net)
     told = [changed(written[0], by=by), *written[1:2]]
-    stopped = changed(written[-1], why="stopped")
+    stopped = changed(written[-1], why="stopped", reason="a person has stopped it")
     assert replay_lines([*told, stopped], net).ok
     assert "for ever" in refused(net, [*told, changed(stopped, loop=0)]).why
 
@@ -459,7 +459,9 @@ def cell(net: FlatNet) -> Parties:
     ("steps", "end", "why"),
     [
         (1, {"why": "finished", "final": ["Top.Done"]}, ""),
-        (1, {"why": "stopped"}, ""),
+        (0, {"why": "stopped", "reason": "a person has stopped it"}, ""),
+        (1, {"why": "stopped"}, "but not for which reason"),
+        (1, {"why": "failed", "reason": "x", "final": ["Top.Done"]}, "as if the run had finished"),
         (1, {"why": "finished"}, "does not name the final places"),
         (1, {"why": "finished", "final": ["Top.Jobs"]}, "its `final` is"),
         (1, {"why": "stopped", "final": []}, "its `final` is"),
@@ -609,3 +611,12 @@ def test_an_exception_of_the_next_step_is_that_of_its_number() -> None:
     for steps in (1, 3):
         result = refused(net, [head, *plain[:steps], end])
         assert result.why == "it says that an inscription raises an exception, but none does"
+
+
+@pytest.mark.parametrize("time", [float("nan"), float("inf"), -float("inf"), 10**400])
+def test_a_time_is_a_finite_number(net: FlatNet, time: float) -> None:
+    """Python reads and writes NaN and Infinity, which are no JSON, and numbers that no clock shows."""
+    head, first, *_ = lines(net)
+    told = [changed(head, by="run"), changed(first, t=time)]
+    result = replay_lines(told, net, is_whole=True)
+    assert not result.ok and "its `t` is" in result.why
