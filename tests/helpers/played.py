@@ -147,7 +147,7 @@ def start(*arguments: str | Path) -> Talking:
     return Talking("play", "--no-browser", *arguments)
 
 
-class Refused(Exception):  # noqa: N818
+class Refused(Exception):
     """The server does not talk with us: the status of its answer."""
 
 

@@ -107,7 +107,7 @@ def not_compiled() -> dict[str, str]:
 # --- texts of values -------------------------------------------------------------------------------
 
 
-class NotShowable(Exception):  # noqa: N818
+class NotShowable(Exception):
     """The value of a case has a type without a text."""
 
 

@@ -118,7 +118,7 @@ _FACTORS = {
 }
 
 
-class _Endless(Exception):  # noqa: N818
+class _Endless(Exception):
     """There have been enough events."""
 
 

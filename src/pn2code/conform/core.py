@@ -61,7 +61,7 @@ class CoreReport:
     raises: bool = False
 
 
-class _Differs(Exception):  # noqa: N818 - a word for what has happened
+class _Differs(Exception):
     """The two differ; the text says where."""
 
 

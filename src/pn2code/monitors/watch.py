@@ -38,7 +38,7 @@ from pn2code.semantics.values.data import Data, MlUnavailable, Value, int_text
 from pn2code.semantics.values.multiset import MultiSet
 
 
-class _Unavailable(Exception):  # noqa: N818 - a word for what has happened
+class _Unavailable(Exception):
     """A function of a monitor applied something that is not available here."""
 
 

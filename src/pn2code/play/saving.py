@@ -91,7 +91,7 @@ def _why(session: Session) -> str:
         return "error"
 
 
-class _Enough(Exception):  # noqa: N818
+class _Enough(Exception):
     """No more steps are wanted."""
 
 

@@ -30,7 +30,7 @@ MOST_WAITING = 200
 """Commands of a page that wait for those before them."""
 
 
-class Full(Exception):  # noqa: N818
+class Full(Exception):
     """All seats are taken."""
 
 

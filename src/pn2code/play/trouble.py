@@ -13,7 +13,7 @@ Json = dict[str, Any]
 MOST_ROWS = 200
 
 
-class Trouble(Exception):  # noqa: N818
+class Trouble(Exception):
     """A command cannot be carried out (a user's matter): the message, and rows about it.
 
     Args:

@@ -31,7 +31,7 @@ MOST_TEXT = 20_000
 """Characters of a text."""
 
 
-class BadText(Exception):  # noqa: N818
+class BadText(Exception):
     """A text is wrong; the diagnostics say how (a user's matter).
 
     Args:

@@ -30,7 +30,7 @@ MOST_NUMBERS = 1 << 28
 """Of an array that is unpacked."""
 
 
-class NotPacked(ValueError):  # noqa: N818 - a word for what has happened
+class NotPacked(ValueError):
     """The data are no packed array; the message says why."""
 
 

@@ -19,7 +19,7 @@ _NAME = re.compile(r"^export (?:async )?(?:function|class|const) (\w+)", re.MULT
 _OTHER = re.compile(r"^\s*(import|export)\b(?!\()", re.MULTILINE)
 
 
-class BadModule(Exception):  # noqa: N818 - a word for what has happened
+class BadModule(Exception):
     """A module uses a form that is not known here, or imports what is not there: a mistake in pn2code."""
 
 

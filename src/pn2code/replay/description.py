@@ -33,7 +33,7 @@ _NEEDED: Mapping[str, type] = {
 }  # fmt: skip
 
 
-class NoDescription(Exception):  # noqa: N818 - a word for what has happened
+class NoDescription(Exception):
     """A file is not a description that can be shown; the message says why and what to do (a user's matter)."""
 
 

@@ -53,7 +53,7 @@ READER = _Part(
 )
 
 
-class _Missing(Exception):  # noqa: N818 - a word for what has happened
+class _Missing(Exception):
     """A part is not there; the message says why and what to do."""
 
 

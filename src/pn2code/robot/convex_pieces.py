@@ -47,7 +47,7 @@ _FORM = "2"
 """Of what is kept; another one is made anew."""
 
 
-class NoPieces(ValueError):  # noqa: N818
+class NoPieces(ValueError):
     """A mesh could not be divided; the message says why, a clause."""
 
 

@@ -23,7 +23,7 @@ _MORE = re.compile("/[^ ]*")
 _STL_HEAD, _STL_ROW = 84, 50
 
 
-class NoMesh(ValueError):  # noqa: N818
+class NoMesh(ValueError):
     """A file is not a mesh that can be read; the message says why."""
 
 

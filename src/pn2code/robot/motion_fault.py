@@ -17,7 +17,7 @@ FaultKind = Literal[
 ]
 
 
-class MotionFault(Exception):  # noqa: N818
+class MotionFault(Exception):
     """A command that cannot be carried out, or a motion that must not go on.
 
     Args:

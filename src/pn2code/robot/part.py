@@ -10,7 +10,7 @@ from pn2code.robot.tools_table import ToolKind
 from pn2code.robot.transforms import Array
 
 
-class PartFault(Exception):  # noqa: N818
+class PartFault(Exception):
     """An action that cannot be: nothing to grip, nothing to release, a place that is taken."""
 
 

@@ -79,5 +79,5 @@ class CellStoppedError(Exception):
     """The cell must stop; the message says why, in full."""
 
 
-class StoppedByHand(CellStoppedError):  # noqa: N818 - a word for what has happened
+class StoppedByHand(CellStoppedError):
     """Somebody wants the cell to stop."""

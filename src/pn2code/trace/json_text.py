@@ -14,7 +14,7 @@ _DEPTH = 2_000
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
 
 
-class BadJson(ValueError):  # noqa: N818 - a word for what has happened
+class BadJson(ValueError):
     """A text is no JSON; the message says why."""
 
 

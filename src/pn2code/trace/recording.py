@@ -19,7 +19,7 @@ from pn2code.net.engine_names import engine_name
 from pn2code.net.flat import FlatNet, FlatTransition
 
 
-class NotARecording(ValueError):  # noqa: N818 - a word for what has happened
+class NotARecording(ValueError):
     """The data have another form; the message says which part."""
 
 

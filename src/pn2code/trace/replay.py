@@ -66,7 +66,7 @@ DEFAULT_SEED = 1
 Watch = Callable[[Game, BindingElement | None, Mapping[str, Any]], None]
 
 
-class _Wrong(Exception):  # noqa: N818 - a word for what has happened
+class _Wrong(Exception):
     """A line cannot be repeated; the message says why."""
 
 

@@ -26,7 +26,7 @@ MOST_MESSAGE = 1 << 20
 _GRACE_S = 2
 
 
-class PortTaken(Exception):  # noqa: N818 - a word for what has happened
+class PortTaken(Exception):
     """The port cannot be had; the message says why (a user's matter)."""
 
 

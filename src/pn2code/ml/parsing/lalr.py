@@ -27,7 +27,7 @@ class Token(Protocol):
         """Its terminal."""
 
 
-class SyntaxProblem(Exception):  # noqa: N818  (reported by the caller)
+class SyntaxProblem(Exception):
     """A token cannot stand where it stands.
 
     Args:

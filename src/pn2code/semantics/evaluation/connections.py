@@ -40,7 +40,7 @@ _SLICE = 0.1
 
 
 @frozen
-class ConnectionProblem(Exception):  # noqa: N818 - a word for what has happened
+class ConnectionProblem(Exception):
     """What CPN Tools raises as an exception.
 
     Args:

@@ -25,7 +25,7 @@ CHUNK = 4096
 """Most characters that `input` gives at once."""
 
 
-class FileProblem(Exception):  # noqa: N818 - a word for what has happened
+class FileProblem(Exception):
     """A file or folder cannot be used; the message says why, `code` is the system's name of it (`noent`)."""
 
     def __init__(self, message: str, code: str) -> None:

@@ -52,7 +52,7 @@ AT_START = Limits(steps=10_000_000)
 """Of a declaration or an initial marking, which are computed once: a thousand sorted tokens take a million."""
 
 
-class NotEnabled(ValueError):  # noqa: N818 - a word for what has happened
+class NotEnabled(ValueError):
     """A binding element was to occur that is not enabled; the message says why."""
 
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from pn2code.semantics.evaluation.evaluate import Evaluator
 
 
-class NotFinite(ValueError):  # noqa: N818 - a word for what has happened
+class NotFinite(ValueError):
     """A real that has to be finite is not."""
 
 

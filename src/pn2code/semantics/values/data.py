@@ -162,7 +162,7 @@ def order(a: Any, b: Any) -> Data:
     return ORDER[0] if a < b else ORDER[2] if b < a else ORDER[1]
 
 
-class MlException(Exception):  # noqa: N818 - the field's word; it is not an error of pn2code
+class MlException(Exception):
     """An exception that CPN ML raised.
 
     Args:
@@ -185,11 +185,11 @@ class MlException(Exception):  # noqa: N818 - the field's word; it is not an err
         return self.name
 
 
-class MlUnavailable(Exception):  # noqa: N818 - a word for what has happened
+class MlUnavailable(Exception):
     """A function was applied that exists in CPN Tools but cannot run here; CPN ML cannot handle it."""
 
 
-class MlLimit(Exception):  # noqa: N818 - a word for what has happened
+class MlLimit(Exception):
     """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
 
 

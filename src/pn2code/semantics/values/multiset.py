@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pn2code.semantics.values.data import Timed, Value, zero_signs
 
 
-class NotContained(ValueError):  # noqa: N818 - a word for what has happened
+class NotContained(ValueError):
     """A multi-set was to be taken from one that does not contain it."""
 
 
