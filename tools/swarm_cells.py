@@ -11,8 +11,7 @@ import argparse
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from random import Random
 
@@ -40,7 +39,18 @@ _EXCHANGE = "the exchange with "
 """What is explored as a whole, with a swarm without a limit."""
 
 
-def said(cell: OpenNet, texts: list[str], folder: Path, *, swarm: bool, checks: Checks) -> Said:
+def limits_of(most: int, searched: int = 0, searches: int = SEARCHES) -> Limits:
+    """Of one exploration; or, if a number of markings is given for a search, of a swarm in this process."""
+    if not searched:
+        return Limits(max_states=most)
+    pool = Swarm(searches, Inline(is_here=True))
+    how = Approximation.BITSTATE
+    return Limits(max_states=searched, memory=32, approximation=how, swarm=pool)
+
+
+def said(
+    cell: OpenNet, texts: Sequence[str], folder: Path, *, limits: Limits, checks: Checks
+) -> Said:
     """What is said of a cell; an error of ours is raised.
 
     Raises:
@@ -48,11 +58,6 @@ def said(cell: OpenNet, texts: list[str], folder: Path, *, swarm: bool, checks: 
     """
     d = Diagnostics()
     asked = question(cell, texts, None, d, found=True)
-    limits = Limits(max_states=MOST_STATES)
-    if swarm:
-        pool = Swarm(SEARCHES, Inline(is_here=True))
-        how = Approximation.BITSTATE
-        limits = replace(limits, max_states=MARKINGS, memory=32, approximation=how, swarm=pool)
     with properties.unnamed_runs(asked, folder) as unnamed:
         options = ExploreOptions(
             traces=folder,
@@ -97,8 +102,8 @@ def differences(seed: int, folder: Path, seen: Counter[str]) -> Iterator[str]:
         return
     try:
         whole, part = (
-            answers(said(cell, texts, folder, swarm=swarm, checks=checks))
-            for swarm in (False, True)
+            answers(said(cell, texts, folder, limits=limits, checks=checks))
+            for limits in (limits_of(MOST_STATES), limits_of(MOST_STATES, MARKINGS))
         )
     except RuntimeError as error:
         if "is none of the programs" in str(error) or "does not:" in str(error):

@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from tools.swarm_cells import differences
+from tools.swarm_cells import differences, limits_of
+from tools.swarm_cells import said as said_of
 
 from helpers import overtaking_cell
-from helpers.swarms import Inline
-from pn2code.cli.verify_swarm import endings
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
 from pn2code.trace.parties import Parties
 from pn2code.trace.replay import replay
-from pn2code.verdict import properties
 from pn2code.verdict.opened import OpenNet, read
-from pn2code.verdict.whole import Checks, Said, conclude, look, question, stem
+from pn2code.verdict.whole import Checks, Said
 from pn2code.verify.controller.control_types import BLOCKING, CONFLUENT, MESSAGES
 from pn2code.verify.controller.played import Played, why_not
-from pn2code.verify.exploring.explore import ExploreOptions
-from pn2code.verify.exploring.limits import Approximation, Limits
-from pn2code.verify.swarm.pool import Swarm
 
 pytestmark = pytest.mark.cc
 
@@ -51,27 +45,9 @@ def searched(
     most: int = 400,
 ) -> Said:
     """What is said of the cell; the runs are in `folder`."""
-    d = Diagnostics()
     cell = opened(folder, goes_on=goes_on)
-    asked = question(cell, texts, None, d, found=True)
-    limits = Limits(max_states=most)
-    if swarm:
-        pool = Swarm(SEARCHES, Inline(is_here=True))
-        limits = replace(limits, swarm=pool, approximation=Approximation.BITSTATE, memory=32)
-    with properties.unnamed_runs(asked, folder) as unnamed:
-        options = ExploreOptions(
-            traces=folder,
-            stem=stem(cell),
-            questions=asked.questions,
-            predicates=asked.properties.predicates,
-            evidence=unnamed,
-            ending=endings(asked.plain),
-        )
-        looked = look(cell, asked, limits, options, folder, d, checks)
-        assert looked is not None, render.report(d)
-        said = conclude(looked, cell, asked, limits, folder, d, checks)
-    assert not d.has_errors, render.report(d)
-    return said
+    limits = limits_of(most, most if swarm else 0, SEARCHES)
+    return said_of(cell, texts, folder, limits=limits, checks=checks)
 
 
 def test_what_the_programs_do_and_the_net_does_not(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
-"""A run as a trace, written while the token game plays it.
+"""A run as a trace, written while the token game plays it, and the game in which a trace of the explorer is played.
 
 written(net, storage, elements, Path("net.trace.jsonl"))      # False: the file cannot be written
+game = game_of(Trace.open(path, net), net, storage)           # at the start of the trace
 """
 
 from __future__ import annotations
@@ -13,7 +14,25 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.script import Trace
 from pn2code.trace.writing import TraceFile, TraceUnwritableError
+
+
+def game_of(trace: Trace, net: FlatNet, storage: Mapping[str, str]) -> Game:
+    """The game at the start of a trace, with its initial marking and its random numbers.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    header = trace.header
+    return Game(
+        net,
+        storage,
+        header.initial or None,
+        seed=header.seed or 1,
+        still=header.still,
+        files=Files(None),
+    )
 
 
 def written(

@@ -14,13 +14,13 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
-from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking, element_text
 from pn2code.semantics.game.report import element, time_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import TEXTS
 from pn2code.semantics.values.data import Value
 from pn2code.trace.parties import VERIFY
+from pn2code.trace.played import game_of
 from pn2code.trace.script import Trace, TraceRefusedError
 from pn2code.verify.exploring import nondeterminism
 
@@ -78,14 +78,7 @@ def play(
         TraceRefusedError, GameError, OSError: as for `steps`, now or later.
     """
     opened = Trace.open(trace, net, is_shown=True)
-    game = Game(
-        net,
-        storage,
-        opened.header.initial or None,
-        seed=opened.header.seed or 1,
-        still=opened.header.still,
-        files=Files(None),
-    )
+    game = game_of(opened, net, storage)
     return game, _play(net, game, opened)
 
 

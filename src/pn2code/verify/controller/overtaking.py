@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pn2code.net.flat import ArcKind, FlatTransition
-from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import MlException, MlLimit
+from pn2code.trace.played import game_of
 from pn2code.trace.script import Trace, TraceRefusedError
 from pn2code.verify.controller.running import Running
 
@@ -52,15 +52,7 @@ def _played(
     earlier: Mapping[int, Sequence[FlatTransition]],
 ) -> bool | None:
     opened = Trace.open(trace, running.net, is_shown=True)
-    header = opened.header
-    game = Game(
-        running.net,
-        storage,
-        header.initial or None,
-        seed=header.seed or 1,
-        still=header.still,
-        files=Files(None),
-    )
+    game = game_of(opened, running.net, storage)
     owners = running.partition.transition_owner
     wakers = _wakers(running, earlier)
     since: dict[int, list[Marking]] = {owner: [] for owner in set(owners)}

@@ -16,9 +16,9 @@ from pathlib import Path
 
 from pn2code.cell.partition import SUPERVISOR
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import Binding, BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.played import game_of
 from pn2code.trace.script import Trace
 from pn2code.verify.controller.running import Running
 
@@ -148,15 +148,7 @@ def why_not(
         TraceRefusedError, GameError, OSError, MlException, MlLimit: it cannot be played.
     """
     opened = Trace.open(trace, running.net, is_shown=True)
-    header = opened.header
-    game = Game(
-        running.net,
-        storage,
-        header.initial or None,
-        seed=header.seed or 1,
-        still=header.still,
-        files=Files(None),
-    )
+    game = game_of(opened, running.net, storage)
     played = Played(running, game)
     for step in islice(opened.steps(), MOST_STEPS):
         if step.time is not None and step.time > game.marking.time:
