@@ -221,7 +221,9 @@ def test_two_at_once(net: Path, tmp_path: Path) -> None:
 
 def test_little_of_everything(net: Path, tmp_path: Path) -> None:
     """Of time, of memory: partial, and everything says so."""
-    for options, why in ((("--memory", "16", "--threads", "64", "--no-unfold"), "memory"),):
+    for options, why in (
+        (("--memory", "16", "--threads", "64", "--no-unfold", "--no-sweep"), "memory"),
+    ):
         report = tmp_path / "r"
         done = pn2code("verify", net, "--json", *options, "--report", report, *ENDLESS[:2])
         said = json.loads(done.stdout)
