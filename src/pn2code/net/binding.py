@@ -250,28 +250,23 @@ class Planner:
                 hint=f"put a variable there, and say in the guard what it is: `v = {text}`",
             )
         guards = parts.guards[: parts.written]
-        for symbol, span in engine_patterns.on_arcs(arcs):
-            if symbol in answer.repeated:
-                self.d.warning(
-                    PATTERN_REPEATS,
-                    f"CPN Tools may take a wrong token for transition `{parts.name}`, and stop: a pattern has "
-                    f"`{symbol.name}` twice, and it does not compare the two",
-                    span,
-                    label="once more",
-                    notes=[Note(HERE, parts.origin)],
-                    hint=f"write another variable there, and say in the guard that it is equal: `v = {symbol.name}`",
-                )
-        for symbol, span in engine_patterns.in_guard(guards, self.terms):
-            if symbol in answer.repeated:
-                self.d.warning(
-                    PATTERN_REPEATS,
-                    f"CPN Tools may let transition `{parts.name}` occur where its guard does not hold: a pattern has "
-                    f"`{symbol.name}` twice, and it does not compare the two",
-                    span,
-                    label="once more",
-                    hint="write another variable there, and say in the guard that it is equal: "
-                    f"`v = {symbol.name}`",
-                )
+        wrong = f"take a wrong token for transition `{parts.name}`, and stop"
+        unheld = f"let transition `{parts.name}` occur where its guard does not hold"
+        for may, found, notes in (
+            (wrong, engine_patterns.on_arcs(arcs), [Note(HERE, parts.origin)]),
+            (unheld, engine_patterns.in_guard(guards, self.terms), []),
+        ):
+            for symbol, span in found:
+                if symbol in answer.repeated:
+                    self.d.warning(
+                        PATTERN_REPEATS,
+                        f"CPN Tools may {may}: a pattern has `{symbol.name}` twice, and it does not compare the two",
+                        span,
+                        label="once more",
+                        notes=notes,
+                        hint="write another variable there, and say in the guard that it is equal: "
+                        f"`v = {symbol.name}`",
+                    )
 
     def warn_of_fields(self, parts: Parts, arcs: Sequence[TakingArc], reader: PartReader) -> None:
         """Of arcs of which CPN Tools may miss tokens."""

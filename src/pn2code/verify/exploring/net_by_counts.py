@@ -20,18 +20,16 @@ Priorities would make transitions depend on each other all over the net, so all 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 
-from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties.questions import ENDLESS, Questions
-from pn2code.verify.exploring.counted import MOST_STATES, SOON, Counted, counted
+from pn2code.verify.exploring.counted import Counted, counted
 from pn2code.verify.exploring.elements import NotPossibleError
-from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.numbers_as_tokens import numbers_as_tokens
-from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Exploration, Known
+from pn2code.verify.exploring.smaller_look import explored
 from pn2code.verify.exploring.turns import turns
 
 MOST_OWNERS = 250
@@ -123,19 +121,10 @@ def _explored(
         turns=made.turns,
         counts=made.counts,
         sizes=made.sizes,
-        generated=Generated(),
         questions=_questions(net, final, rising, to_the_end=to_the_end),
         stem="counts",
-        progress=options.progress,
-        interrupted=options.interrupted,
-        initial=options.initial,
-        quick=True,
-        first_states=SOON,
     )
-    most = min(limits.max_states or MOST_STATES, MOST_STATES)
-    own_limits = replace(limits, max_states=most, traces=0, graph=to_the_end, reductions=())
-    d = Diagnostics()  # what is wrong with the net all of its markings tell
-    found = explore(net, storage, own_limits, d, own)
+    found = explored(net, storage, limits, options, own, graph=to_the_end)
     if found is None or len(found.answers) != own.questions.count("? "):
         return None
     return found if found.seen.arcs or not to_the_end else None

@@ -9,18 +9,15 @@ dead`; where one does not, nothing is said), and whether each of these has a tok
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 
-from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties.questions import Questions
-from pn2code.verify.exploring.counted import MOST_STATES, SOON
-from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.find_instances import instances
 from pn2code.verify.exploring.invariant_questions import AskedOf
 from pn2code.verify.exploring.limits import Limits, Reduction
-from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Known
+from pn2code.verify.exploring.smaller_look import explored
 
 
 def look(
@@ -34,22 +31,9 @@ def look(
     questions = _questions(final)
     if net.timed or not instances(net, storage, AskedOf(questions)).families:
         return None
-    own = ExploreOptions(
-        sizes=options.sizes,
-        generated=Generated(),
-        questions=questions,
-        stem="parts",
-        progress=options.progress,
-        interrupted=options.interrupted,
-        initial=options.initial,
-        quick=True,
-        first_states=SOON,
-    )
-    most = min(limits.max_states or MOST_STATES, MOST_STATES)
+    own = ExploreOptions(sizes=options.sizes, questions=questions, stem="parts")
     kept = (Reduction.SYMMETRY,)
-    own_limits = replace(limits, max_states=most, traces=0, graph=True, reductions=kept)
-    d = Diagnostics()  # what is wrong with the net all of its markings tell
-    found = explore(net, storage, own_limits, d, own)
+    found = explored(net, storage, limits, options, own, graph=True, reductions=kept)
     if found is None or found.error is not None or not found.complete or not found.symmetries:
         return None
     ends, rests = (row["answer"] == "yes" for row in found.answers)
